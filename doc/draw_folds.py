@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Draws skins in raking light: draw_folds.py PICTURE.png TITLE=FILE.ply ...
 
-FILE.ply is a frame that `frontalis run SCENE --frames FOLDER` wrote. The light comes from above, which shows lines across the forehead;
-TITLE=left:FILE.ply has it from the subject's left, for lines that run up. Needs python3-vtk9; without a display run it under xvfb-run.
+FILE.ply is a frame that `frontalis run SCENE --frames FOLDER` wrote. The light comes from above, which shows lines
+across the forehead; TITLE=left:FILE.ply has it from the subject's left, for lines that run up. A single row of skins is
+drawn larger. Needs python3-vtk9; without a display run it under xvfb-run.
 """
 import sys
 
@@ -24,7 +25,8 @@ def draw(meshes, picture):
     window.SetOffScreenRendering(1)
     columns = min(COLUMNS, len(meshes))
     rows = -(-len(meshes) // columns)
-    window.SetSize(296 * columns, 232 * rows)
+    width, height = (296, 232) if rows > 1 else (480, 376)
+    window.SetSize(width * columns, height * rows)
     window.SetMultiSamples(8)
     for k, (title, light_from, mesh) in enumerate(meshes):
         normals = vtk.vtkPolyDataNormals()

@@ -19,6 +19,8 @@ PosedFace::PosedFace(std::shared_ptr<const Model> model, const SolverSettings& s
 void PosedFace::read_skin(SkinState& skin)
 {
   solver_->skin(skin);
+  if (fine_lines_)
+    fine_lines_->add_to(skin, true);
   to_face_frame(*model_, skin);
 }
 
@@ -26,6 +28,8 @@ const SkinState& PosedFace::take(const Controls& pose, double seconds, const std
 {
   constexpr int slices = 12;  // Ctrl-C is noticed between two of them
   solver_->reset();
+  if (fine_lines_)
+    fine_lines_->reset();
   guard_.restart();
   const ControlCurve curve{ { 0, seconds * 2 / 3 }, { rest_controls(*model_), pose } };
   for (int slice = 1; slice <= slices; ++slice)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "frontalis/solver/fine_lines.hpp"
 #include "frontalis/solver/guard.hpp"
 
 #include <functional>
@@ -30,6 +31,7 @@ private:
   std::shared_ptr<const Model> model_;
   std::unique_ptr<Solver> solver_;
   Guard guard_;
+  std::unique_ptr<FineLines> fine_lines_ = FineLines::make(model_, false);  ///< null: the skin has none
   SkinState rest_, skin_;
 };
 

@@ -79,16 +79,16 @@ void Run::observe()
   summary.monitor = solver.monitor();
   if (summary.ledger)
     summary.ledger = solver.ledger();
+  if (fine_lines)
+  {
+    fine_lines->add_to(summary.end, true);
+    summary.fine_lines += fine_lines->seconds();
+  }
   if (!summary.monitor.finite || !is_finite(summary.end))
     throw Error(
         fmt::format("the motion diverged at {:g} s: displacements are no longer finite; use a smaller "
                     "time_step_share, smaller activations or more damping",
                     time));
-  if (fine_lines)
-  {
-    fine_lines->add_to(summary.end);
-    summary.fine_lines += fine_lines->seconds();
-  }
   summary.bodies = bodies_in_face_frame(solver, model);
   to_face_frame(model, summary.end);
   summary.seconds = time;

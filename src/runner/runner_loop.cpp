@@ -95,10 +95,11 @@ void Runner::Implementation::make_frame(bool renew_monitor)
   {
     SkinState skin;
     solver->skin(skin);
+    // the frame of a step or of a reset waits for its lines, since the face may stand still after it
+    if (fine_lines)
+      fine_lines->add_to(skin, renew_monitor);
     if (is_finite(skin))
     {
-      if (fine_lines)
-        fine_lines->add_to(skin);
       to_face_frame(*model, skin);
       frame.skin = std::move(skin);
       const auto field = settings.wanted_field ? settings.wanted_field() : std::nullopt;

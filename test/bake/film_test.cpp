@@ -101,7 +101,7 @@ TEST(BakeFilm, is_the_same_in_the_model_file)
   EXPECT_EQ(film.parents, model.film.parents);
 }
 
-TEST(BakeFilm, must_be_stiff_and_have_lines_that_can_be_resolved)
+TEST(BakeFilm, must_be_stiff_and_have_lines_that_can_be_resolved_on_the_skin)
 {
   Scene soft = ball_with_film();
   soft.film->material = soft.film->base;
@@ -109,6 +109,9 @@ TEST(BakeFilm, must_be_stiff_and_have_lines_that_can_be_resolved)
   Scene thin = ball_with_film();
   thin.film->thickness = 1e-6;
   EXPECT_NE(error_of(thin).find("million vertices"), std::string::npos) << error_of(thin);
+  Scene beside = ball_with_film();
+  beside.film->crop.lower[2] = 2 * radius;
+  EXPECT_NE(error_of(beside).find("skin: fine_lines: crop: no triangle"), std::string::npos) << error_of(beside);
 }
 
 }  // namespace

@@ -358,23 +358,6 @@ TEST(Runner, FieldsOfTheSkinAreComputedWhereSomebodyWantsThem)
   EXPECT_TRUE(runner.step(0.01).field.empty());
 }
 
-TEST(Runner, SkinsWithAFilmHaveHeightsOfFineLines)
-{
-  Model film = *bar();
-  film.film.thickness = 1e-4;
-  film.film.modulus = 1e6;
-  film.film.base_modulus = 1e4;
-  film.film.carried = film.skin.triangles;
-  RunnerSettings wanted = settings(Pace::lock_step);
-  wanted.wanted_field = [] { return SkinField::lines; };
-  Runner runner(std::make_shared<const Model>(film), wanted, {});
-  const Frame frame = runner.step(0.01);
-  EXPECT_EQ(frame.skin.line_height.size(), 3u);
-  EXPECT_EQ(frame.field, frame.skin.line_height);
-  Runner plain(bar(), wanted, {});
-  EXPECT_TRUE(plain.step(0.01).skin.line_height.empty());
-}
-
 TEST(Runner, FrameRatesThatMakeNoSenseAreRefused)
 {
   for (const double rate : { 1e-3, 1e9 })

@@ -12,8 +12,8 @@ namespace frontalis
 class FineLines
 {
 public:
-  /// Null if the skin has no film. With `own_thread` a thread of its own finds the heights of the lines, and each frame
-  /// takes the latest that are ready, so that no frame waits; else add_to() finds them, the same in every run.
+  /// Null if the skin has no film. With `own_thread` a thread of its own finds the heights of the lines; else add_to()
+  /// finds them, the same in every run.
   static std::unique_ptr<FineLines> make(std::shared_ptr<const Model> model, bool own_thread);
 
   ~FineLines();
@@ -22,8 +22,9 @@ public:
 
   /// Takes the skin of a solver, in the local frame. Places the vertices that the film has added on a smooth surface
   /// through the carried ones, moves them along its normals by the height of the lines, finds the normals anew, and
-  /// sets SkinState::line_height.
-  void add_to(SkinState& skin);
+  /// sets SkinState::line_height. If a thread of its own finds the heights, `wait` tells whether to wait for those of
+  /// this skin or to take the latest that are ready.
+  void add_to(SkinState& skin, bool wait);
 
   /// Makes the skin flat, as it is at rest, whatever is being found.
   void reset();

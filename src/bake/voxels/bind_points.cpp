@@ -182,7 +182,11 @@ void add_film(const Scene& scene, const SceneFilm& film, TriangleMesh& surface, 
     throw failure(
         "{}: film '{}' is {:.3g} times as stiff as its base '{}'; lines need a film at least 10 times as stiff", place,
         film.material, out.modulus / out.base_modulus, film.base);
-  const double vertices = vertices_per_edge_area * surface_area(cut_mesh(surface, film.crop)) / (edge * edge);
+  const double area = surface_area(cut_mesh(surface, film.crop));
+  if (area <= 0 && !surface.triangles.empty())
+    throw failure("{}: crop: no triangle of the published skin lies in it; check its corners and the skin's crop",
+                  place);
+  const double vertices = vertices_per_edge_area * area / (edge * edge);
   if (vertices > most_vertices)
     throw failure(
         "{}: lines are {} apart, and the skin needs about {:.1f} million vertices; at most {:.0f} million are "

@@ -186,7 +186,8 @@ void FilmEquilibrium::find_strain(const std::vector<std::array<float, 3>>& verti
 }
 
 // Finds the vertices whose heights are to be found, and the forces of the film on their edges, and sets lines off where
-// there are none. In units of the film, a compression by the critical strain is a force of 3 per length.
+// there are none or where they are no numbers. In units of the film, a compression by the critical strain is a force of
+// 3 per length.
 void FilmEquilibrium::find_active(Field& w)
 {
   const auto poisson = static_cast<float>(model_.film.poisson), stretch = static_cast<float>(model_.film.stretch);
@@ -205,7 +206,7 @@ void FilmEquilibrium::find_active(Field& w)
       continue;
     }
     active_.push_back(static_cast<std::int32_t>(v));
-    if (compression > critical_ && std::abs(w[v]) < 0.1F * std::abs(seed_[v]))
+    if (!std::isfinite(w[v]) || (compression > critical_ && std::abs(w[v]) < 0.1F * std::abs(seed_[v])))
       w[v] = seed_[v];
   }
   const auto scale = static_cast<float>(3 / critical_);

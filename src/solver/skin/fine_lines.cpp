@@ -34,11 +34,12 @@ struct FineLines::Implementation
 
   // shared with the thread and protected by the mutex
   std::mutex mutex;
-  std::condition_variable wake;
-  Vertices next;              // vertices to find heights for; empty: none
-  std::vector<float> height;  // the latest ones
+  std::condition_variable wake;  // there is something to find, or it has been found
+  Vertices next;                 // vertices to find heights for; empty: none
+  std::vector<float> height;     // the latest ones
   bool stop = false;
-  bool discard = false;  ///< what the thread is finding is of no use
+  bool busy = false;     // the thread is finding heights
+  bool discard = false;  // what it is finding is of no use
   std::thread thread;
 
   explicit Implementation(std::shared_ptr<const Model> of)
@@ -63,13 +64,16 @@ struct FineLines::Implementation
         return;
       const Vertices vertices = std::move(next);
       next.clear();
+      busy = true;
       lock.unlock();
       find(vertices);
       lock.lock();
+      busy = false;
       if (std::exchange(discard, false))
         found.clear();
       else
         height = found;
+      wake.notify_all();
     }
   }
 
@@ -116,15 +120,17 @@ FineLines::~FineLines()
     self_->thread.join();
 }
 
-void FineLines::add_to(SkinState& skin)
+void FineLines::add_to(SkinState& skin, bool wait)
 {
   self_->place(skin);
   if (self_->thread.joinable())
   {
-    const std::lock_guard<std::mutex> lock(self_->mutex);
+    std::unique_lock<std::mutex> lock(self_->mutex);
     self_->next = skin.vertices;
-    skin.line_height = self_->height;
     self_->wake.notify_all();
+    if (wait)
+      self_->wake.wait(lock, [&] { return self_->next.empty() && !self_->busy; });
+    skin.line_height = self_->height;
   }
   else
   {
@@ -140,11 +146,11 @@ void FineLines::add_to(SkinState& skin)
 void FineLines::reset()
 {
   const std::lock_guard<std::mutex> lock(self_->mutex);
-  if (!self_->thread.joinable())
+  self_->discard = self_->busy;
+  if (!self_->busy)
     self_->found.clear();
   std::fill(self_->height.begin(), self_->height.end(), 0.0F);
   self_->next.clear();
-  self_->discard = true;
 }
 
 double FineLines::seconds() const { return self_->seconds; }

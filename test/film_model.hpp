@@ -1,0 +1,47 @@
+#pragma once
+
+#include "frontalis/model/model.hpp"
+
+#include <cstdint>
+
+namespace frontalis
+{
+namespace test
+{
+
+constexpr double film_thickness = 0.1e-3;
+
+/// A square skin, ten wavelengths wide, of irregular triangles with six edges per wavelength, and a film of this
+/// stiffness over its base.
+inline Model film_model(double stiffness_ratio)
+{
+  Model model;
+  model.spacing = { { 1e-4, 1e-4, 1e-4 } };
+  model.film.thickness = film_thickness;
+  model.film.base_modulus = 1e5;
+  model.film.modulus = stiffness_ratio * model.film.base_modulus;
+  model.film.poisson = 0.49;
+  const double edge = film_wavelength(model.film) / 6;
+  constexpr std::int32_t n = 60;
+  std::uint32_t state = 1;
+  const auto shift = [&](std::int32_t i)
+  {
+    state = state * 1664525U + 1013904223U;
+    return i == 0 || i == n ? 0 : 0.4 * ((state >> 8U) / 16777216.0 - 0.5);
+  };
+  for (std::int32_t j = 0; j <= n; ++j)
+    for (std::int32_t i = 0; i <= n; ++i)
+      model.skin.vertices.push_back({ { edge * (i + shift(i)), edge * (j + shift(j)), 0 } });
+  for (std::int32_t j = 0; j < n; ++j)
+    for (std::int32_t i = 0; i < n; ++i)
+    {
+      const std::int32_t a = j * (n + 1) + i, b = a + 1, c = b + n, d = c + 1;
+      model.skin.triangles.push_back({ { a, b, (i + j) % 2 == 0 ? c : d } });
+      model.skin.triangles.push_back({ { (i + j) % 2 == 0 ? b : a, d, c } });
+    }
+  model.film.carried = model.skin.triangles;
+  return model;
+}
+
+}  // namespace test
+}  // namespace frontalis
