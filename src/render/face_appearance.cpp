@@ -134,16 +134,17 @@ SkinAppearance skin_appearance(const std::vector<std::string>& landmarks, const 
 std::vector<Eyeball> eyeballs(const Model& model, const std::function<RigidTransform(std::size_t bone)>& motion)
 {
   // A white ball with the cap of a brown one, the iris, and on it the cap of a black one, the pupil. Radii of the
-  // balls, and of the circles in which they meet the ball before, over that of the eyeball: an iris of 11.7 mm, a
-  // cornea with a radius of 7.8 mm and a pupil of 4.4 mm on a ball of 24.2 mm.
+  // balls, and of the circles in which they meet the ball before, over that of the eyeball: an iris of 11.7 mm and a
+  // pupil of 4.4 mm on a ball of 24.2 mm. The caps are flatter than a cornea, whose radius is 7.8 mm: tissue slides on
+  // the white ball, and a cornea would show through closed lids.
   struct Cap
   {
     double radius, rim;
     Point colour;
   };
   constexpr std::array<Cap, 3> caps{ { { 1, 0, { { 0.92F, 0.90F, 0.87F } } },
-                                       { 0.645, 0.483, { { 0.30F, 0.20F, 0.12F } } },
-                                       { 0.32, 0.18, { { 0.02F, 0.02F, 0.02F } } } } };
+                                       { 0.75, 0.483, { { 0.30F, 0.20F, 0.12F } } },
+                                       { 0.6, 0.18, { { 0.02F, 0.02F, 0.02F } } } } };
   std::vector<Eyeball> out;
   for (const ConstraintSurface& eye : model.constraint_surfaces)
   {
