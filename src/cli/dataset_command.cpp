@@ -17,6 +17,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <random>
 
 namespace frontalis
@@ -182,25 +183,65 @@ Json write_images(const std::string& folder, int frame, const Images& images, in
   return names;
 }
 
+// Throws Error if the data set that is to be continued was made with other options.
+void check_same(const std::string& file, const Json& now)
+{
+  std::ifstream in(file);
+  // a part of a set that another machine began
+  if (!in)
+    return;
+  const Json before = Json::parse(in, nullptr, false);
+  for (const auto& [key, value] : now.items())
+    if (const Json found = before.is_object() ? before.value(key, Json()) : Json(); found != value)
+      throw Error(fmt::format("{}: {} is {}; to continue this data set, it must be {} as in this run", file, key,
+                              found.dump(), value.dump()));
+}
+
+// Removes a last line that was not written completely. Throws Error if the list has frames from `first` on already.
+void check_list(const std::string& list, int first)
+{
+  std::ifstream in(list, std::ios::binary);
+  if (!in)
+    return;
+  std::uintmax_t size = 0;
+  int next = 0;
+  for (std::string line; std::getline(in, line) && !in.eof(); size += line.size() + 1)
+  {
+    const Json json = Json::parse(line, nullptr, false);
+    const Json frame = json.is_object() ? json.value("frame", Json()) : Json();
+    if (!frame.is_number_integer())
+      throw Error(fmt::format("{}: the line at byte {} is not that of a frame", list, size));
+    next = std::max(next, frame.get<int>() + 1);
+  }
+  if (next > first)
+    throw Error(fmt::format("{}: has frame {} already; --first must be {} or more", list, next - 1, next));
+  std::filesystem::resize_file(list, size);
+}
+
 void write_dataset(const DatasetOptions& options)
 {
+  camera_with(options.size[0], options.size[1], 1);  // throws Error on wrong sizes before anything is written
   const auto model = std::make_shared<const Model>(obtain_model(options.source));
   if (model->action_units.empty())
     throw Error(options.source.path + ": has no action units, of which expressions are mixed (key `action_units`)");
+  const Json description{ { "scene_hash", model->scene_hash }, { "seed", options.seed },
+                          { "seconds", options.seconds },      { "width", options.size[0] },
+                          { "height", options.size[1] },       { "depth_unit_m", depth_unit },
+                          { "labels", label_names() } };
+  const std::string description_file = options.folder + "/dataset.json", list = options.folder + "/frames.jsonl";
+  if (options.first > 0)
+  {
+    check_same(description_file, description);
+    check_list(list, options.first);
+  }
   make_folder(options.folder);
-  write_text(options.folder + "/dataset.json", json_text({ { "scene_hash", model->scene_hash },
-                                                           { "seed", options.seed },
-                                                           { "seconds", options.seconds },
-                                                           { "width", options.size[0] },
-                                                           { "height", options.size[1] },
-                                                           { "depth_unit_m", depth_unit },
-                                                           { "labels", label_names() } }));
-  const std::string list = options.folder + "/frames.jsonl";
+  write_text(description_file, json_text(description));
   std::ofstream lines(list, options.first > 0 ? std::ios::app : std::ios::trunc);
 
   PosedFace face(model, options.solver);
   const FaceAppearance appearance(*model, face.rest());
-  std::array<double, 3> low{ 1, 1, 1 }, high{ -1, -1, -1 };
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  std::array<double, 3> low{ infinity, infinity, infinity }, high{ -infinity, -infinity, -infinity };
   for (const auto& vertex : face.rest().vertices)
     for (std::size_t i = 0; i < 3; ++i)
     {
@@ -251,7 +292,7 @@ void add_dataset_command(CLI::App& app)
   command->add_option("SCENE_OR_MODEL", options->source.path, "scene (YAML) or baked model (.vtkhdf)")->required();
   command->add_option("-o,--output", options->folder, "folder for the images, frames.jsonl and dataset.json")
       ->required();
-  add_positive(*command, "--frames", options->frames, "number of frames (100)");
+  command->add_option("--frames", options->frames, "number of frames (100)")->check(CLI::Range(1, 1000000));
   command->add_option("--seed", options->seed, "equal seeds give equal files (1)");
   command
       ->add_option("--first", options->first,

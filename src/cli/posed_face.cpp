@@ -2,6 +2,7 @@
 
 #include "cli/command.hpp"
 
+#include "frontalis/error.hpp"
 #include "frontalis/runner/face_frame.hpp"
 #include "frontalis/runner/named_controls.hpp"
 
@@ -13,6 +14,8 @@ namespace frontalis
 PosedFace::PosedFace(std::shared_ptr<const Model> model, const SolverSettings& settings)
     : model_(std::move(model)), solver_(make_solver(model_, settings)), guard_(*solver_, model_)
 {
+  if (model_->skin.vertices.empty())
+    throw Error("the model has no skin");
   read_skin(rest_);
 }
 
@@ -39,7 +42,18 @@ const SkinState& PosedFace::take(const Controls& pose, double seconds, const std
     if (interrupt_requested())
       throw Interrupted();
   }
+  // The guard looks only every few hundred steps, so it is asked about the last ones. After a finding it has gone back.
+  const double end = solver_->time();
+  for (std::int64_t before = -1; before != guard_.counts().rollbacks;)
+  {
+    before = guard_.counts().rollbacks;
+    guard_.check();
+    if (before != guard_.counts().rollbacks)
+      guard_.advance(end - solver_->time(), pose);
+  }
   read_skin(skin_);
+  if (!is_finite(skin_))
+    throw Error("the skin has coordinates that are not finite");
   return skin_;
 }
 

@@ -13,13 +13,14 @@ namespace frontalis
 class PosedFace
 {
 public:
+  /// Throws Error if the model has no skin, and as make_solver() does.
   PosedFace(std::shared_ptr<const Model> model, const SolverSettings& settings);
 
   /// The skin at rest, in the face frame.
   const SkinState& rest() const { return rest_; }
   /// Moves to the pose in two thirds of the time, linearly, and stays for the rest of it; `seconds` on the clock of the
   /// activations. Returns the skin then, in the face frame. `watch` is called with the proportion that is done. Throws
-  /// Unstable if the guard stops the motion, and Interrupted after Ctrl-C.
+  /// Unstable if the guard stops the motion, Error if the skin is not finite, and Interrupted after Ctrl-C.
   const SkinState& take(const Controls& pose, double seconds, const std::function<void(double done)>& watch);
   /// Of the skin that was taken last.
   const Controls& controls() const { return solver_->controls(); }

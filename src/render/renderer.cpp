@@ -156,7 +156,8 @@ bool Renderer::Implementation::is_hidden(const Vector& from, const Vector& direc
   return ray.tfar < 0;
 }
 
-// Embree, in single precision, finds the triangle; its place on the ray is found again in double precision.
+// Embree, in single precision, finds the triangle; its place on the ray is found again in double precision. On a
+// triangle seen nearly edge-on, rounding can put that place anywhere on the ray, so it is kept between the corners.
 Hit Renderer::Implementation::meets_triangle(const Vector& direction, const RenderMesh& mesh, std::size_t triangle,
                                              double guess) const
 {
@@ -166,7 +167,8 @@ Hit Renderer::Implementation::meets_triangle(const Vector& direction, const Rend
   const Vector area = cross(ab, ac);
   const double approach = dot(area, direction);
   Hit hit;
-  hit.depth = approach == 0 ? guess : dot(area, a) / approach;
+  const auto [near, far] = std::minmax({ a[2], a[2] + ab[2], a[2] + ac[2] });
+  hit.depth = std::clamp(approach == 0 ? guess : dot(area, a) / approach, near, far);
   hit.point = along({}, hit.depth, direction);
   const Vector in = minus(hit.point, a);
   const double square = dot(area, area);

@@ -7,9 +7,10 @@
 int main(int count, char** arguments)
 {
   ros::init(count, arguments, "camera");
+  const ros::NodeHandle handle;  // logging ends with the last handle, so it is kept until the error is logged
   try
   {
-    const frontalis::VirtualCamera camera(ros::NodeHandle(), ros::NodeHandle("~"));
+    const frontalis::VirtualCamera camera(handle, ros::NodeHandle("~"));
     ros::spin();
     return 0;
   }

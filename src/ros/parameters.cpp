@@ -1,87 +1,18 @@
 #include "frontalis/ros/parameters.hpp"
 
 #include "frontalis/error.hpp"
+#include "ros/parameter_reader.hpp"
 
 #include <fmt/format.h>
 #include <ros/package.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace frontalis
 {
 
 namespace
 {
-
-/// Reads parameters one by one and collects their faults.
-class Reader
-{
-public:
-  explicit Reader(const ros::NodeHandle& handle) : handle_(handle) {}
-
-  std::string text(const std::string& key, const std::string& fallback)
-  {
-    std::string value = fallback;
-    int number = 0;
-    if (!handle_.hasParam(key) || handle_.getParam(key, value))
-      return value;
-    // roslaunch turns a text such as "1" into a number
-    if (handle_.getParam(key, number))
-      return std::to_string(number);
-    add_fault(key, "has the wrong type; allowed is a text");
-    return fallback;
-  }
-
-  template <typename T>
-  T value(const std::string& key, T fallback, const char* allowed)
-  {
-    T found = fallback;
-    if (handle_.hasParam(key) && !handle_.getParam(key, found))
-      add_fault(key, fmt::format("has the wrong type; allowed is {}", allowed));
-    return found;
-  }
-
-  /// Reads a finite number that is at least `least`.
-  template <typename T>
-  T number(const std::string& key, T fallback, const char* type, T least, const char* allowed)
-  {
-    const T found = value(key, fallback, type);
-    if (!(found >= least) || !std::isfinite(found))
-      add_fault(key, fmt::format("found {}; allowed is {}", found, allowed));
-    return found;
-  }
-
-  /// Reads a text parameter and returns value_of(text), which throws an Error if the text is not allowed.
-  template <typename Value>
-  Value named(const std::string& key, const std::string& fallback, Value (*value_of)(const std::string&))
-  {
-    try
-    {
-      return value_of(text(key, fallback));
-    }
-    catch (const Error& error)
-    {
-      add_fault(key, error.what());
-      return value_of(fallback);
-    }
-  }
-
-  void add_fault(const std::string& key, const std::string& fault)
-  {
-    faults_ += fmt::format("\n{}: {}", handle_.resolveName(key), fault);
-  }
-
-  void finish() const
-  {
-    if (!faults_.empty())
-      throw Error("bad parameters:" + faults_);
-  }
-
-private:
-  ros::NodeHandle handle_;
-  std::string faults_;
-};
 
 Pace pace_from_name(const std::string& name)
 {
@@ -93,7 +24,7 @@ Pace pace_from_name(const std::string& name)
 }
 
 /// Reads the parameter ~bone_frames: for each bone a frame, or a mapping {frame, rest} with the frame's place at rest.
-std::vector<BoneFrame> read_bone_frames(Reader& reader)
+std::vector<BoneFrame> read_bone_frames(ParameterReader& reader)
 {
   std::vector<BoneFrame> out;
   XmlRpc::XmlRpcValue all;
@@ -128,7 +59,7 @@ SkinColour skin_colour_from_name(const std::string& name)
 
 FaceParameters read_parameters(const ros::NodeHandle& private_handle)
 {
-  Reader reader(private_handle);
+  ParameterReader reader(private_handle);
   FaceParameters out;
   out.bake.scene = reader.text("scene", "");
   out.model = reader.text("model", "");

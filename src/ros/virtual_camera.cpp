@@ -1,7 +1,7 @@
 #include "frontalis/ros/virtual_camera.hpp"
 
-#include "frontalis/error.hpp"
 #include "frontalis/ros/conversions.hpp"
+#include "ros/parameter_reader.hpp"
 
 #include <fmt/format.h>
 #include <ros/ros.h>
@@ -14,6 +14,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <utility>
 
 namespace frontalis
 {
@@ -22,13 +23,16 @@ namespace
 
 constexpr double degree = 3.14159265358979323846 / 180;
 constexpr double patience = 0.3;  // wall seconds to wait for a transform of the frame's moment
+constexpr double silence = 30;    // wall seconds between two warnings that the face sends nothing
 constexpr float unknown = std::numeric_limits<float>::quiet_NaN();
 
-std::array<double, 3> point_of(const std::vector<double>& numbers, const std::string& parameter)
+std::array<double, 3> read_vector(ParameterReader& reader, const std::string& key, const std::vector<double>& fallback)
 {
-  if (numbers.size() != 3)
-    throw Error(fmt::format("~{}: has {} numbers; must be [x, y, z] in metres", parameter, numbers.size()));
-  return { numbers[0], numbers[1], numbers[2] };
+  const auto found = reader.value(key, fallback, "a list of three numbers");
+  if (found.size() == 3 && std::isfinite(found[0]) && std::isfinite(found[1]) && std::isfinite(found[2]))
+    return { found[0], found[1], found[2] };
+  reader.add_fault(key, fmt::format("found [{}]; allowed are three finite numbers", fmt::join(found, ", ")));
+  return { fallback[0], fallback[1], fallback[2] };
 }
 
 sensor_msgs::Image image_of(const std_msgs::Header& header, const PinholeCamera& camera, const std::string& encoding,
@@ -62,20 +66,28 @@ sensor_msgs::CameraInfo info_of(const std_msgs::Header& header, const PinholeCam
 
 }  // namespace
 
-VirtualCamera::VirtualCamera(ros::NodeHandle handle, ros::NodeHandle private_handle)
-    : frame_(private_handle.param<std::string>("frame", "camera_optical_frame")),
-      camera_(camera_with(private_handle.param("width", 640), private_handle.param("height", 480),
-                          private_handle.param("field_of_view", 35.0) * degree)),
-      samples_(private_handle.param("samples", 1)),
-      rate_(private_handle.param("rate", 10.0)),
-      listener_(buffer_)
+VirtualCamera::VirtualCamera(ros::NodeHandle handle, ros::NodeHandle private_handle) : listener_(buffer_)
 {
+  ParameterReader reader(private_handle);
+  frame_ = reader.text("frame", "camera_optical_frame");
+  const int width = reader.value("width", 640, "a whole number [pixels]");
+  const int height = reader.value("height", 480, "a whole number [pixels]");
+  const double field_of_view = reader.value("field_of_view", 35.0, "a number [degrees]");
+  samples_ = reader.value("samples", 1, "a whole number");
   if (samples_ < 1 || samples_ > 16)
-    throw Error(fmt::format("~samples: is {}; must be from 1 to 16", samples_));
-  if (!(rate_ >= 0))
-    throw Error(fmt::format("~rate: is {:g}; must be 0 or more", rate_));
-  light_.key = point_of(private_handle.param<std::vector<double>>("light", { 1, -0.7, 0.9 }), "light");
-  place(private_handle);
+    reader.add_fault("samples", fmt::format("found {}; allowed is 1 to 16", samples_));
+  rate_ = reader.number("rate", 10.0, "a number [1/s]", 0.0, "0 (every frame) or more [1/s]");
+  light_.key = read_vector(reader, "light", { 1, -0.7, 0.9 });
+  if (light_.key == std::array<double, 3>{})
+    reader.add_fault("light", "found no direction; allowed is a vector other than zero");
+  const std::string parent = reader.text("parent_frame", "");
+  const auto position = read_vector(reader, "position", { 0.55, 0.15, 0 });
+  const auto target = read_vector(reader, "look_at", { -0.03, 0, -0.03 });
+  const std::string face = reader.text("face", "face") + "/";
+  reader.finish();
+  camera_ = camera_with(width, height, field_of_view * degree);
+  if (!parent.empty())
+    place(parent, look_at(position, target));
   private_handle.setParam("label_names", label_names());
   info_ = private_handle.advertise<sensor_msgs::CameraInfo>("camera_info", 1);
   rgb_ = private_handle.advertise<sensor_msgs::Image>("rgb", 1);
@@ -83,28 +95,22 @@ VirtualCamera::VirtualCamera(ros::NodeHandle handle, ros::NodeHandle private_han
   labels_ = private_handle.advertise<sensor_msgs::Image>("labels", 1);
   points_ = private_handle.advertise<sensor_msgs::PointCloud2>("points", 1);
   landmarks_ = private_handle.advertise<sensor_msgs::PointCloud2>("landmarks", 1);
-  const std::string face = private_handle.param<std::string>("face", "face") + "/";
   subscribe<shape_msgs::Mesh>(handle, face + "skin_topology", &Inputs::topology);
   subscribe<sensor_msgs::PointCloud2>(handle, face + "skin_points", &Inputs::skin);
   subscribe<geometry_msgs::PoseArray>(handle, face + "landmarks", &Inputs::landmarks);
   subscribe<SimulationState>(handle, face + "state", &Inputs::state);
   subscribe<visualization_msgs::MarkerArray>(handle, face + "eyes", &Inputs::eyes);
   subscribe<visualization_msgs::MarkerArray>(handle, face + "bodies", &Inputs::bodies);
+  silence_timer_ = handle.createWallTimer(ros::WallDuration(silence), [this](const auto&) { report_silence(); });
 }
 
-// publishes the pose of the camera, unless another node does
-void VirtualCamera::place(const ros::NodeHandle& private_handle)
+// publishes the pose of the camera
+void VirtualCamera::place(const std::string& parent, const RigidTransform& to_camera)
 {
-  const auto parent = private_handle.param<std::string>("parent_frame", "");
-  if (parent.empty())
-    return;
-  const RigidTransform pose =
-      look_at(point_of(private_handle.param<std::vector<double>>("position", { 0.55, 0.15, 0 }), "position"),
-              point_of(private_handle.param<std::vector<double>>("look_at", { -0.03, 0, -0.03 }), "look_at"));
   // the axes of the camera are the rows of the rotation, and the columns of its inverse
-  const auto& r = pose.rotation;
+  const auto& r = to_camera.rotation;
   const tf2::Matrix3x3 axes(r[0], r[3], r[6], r[1], r[4], r[7], r[2], r[5], r[8]);
-  const auto& t = pose.translation;
+  const auto& t = to_camera.translation;
   const tf2::Vector3 at = -(axes * tf2::Vector3(t[0], t[1], t[2]));
   tf2::Quaternion turn;
   axes.getRotation(turn);
@@ -129,7 +135,10 @@ void VirtualCamera::subscribe(ros::NodeHandle& handle, const std::string& topic,
   const boost::function<void(const typename Message::ConstPtr&)> take = [this, input](const auto& message)
   {
     inputs_.*input = message;
-    if (is_complete() && is_wanted())
+    if (!is_complete())
+      return;
+    was_complete_ = true;
+    if (is_wanted())
       take_picture();
   };
   subscribers_.push_back(handle.subscribe<Message>(topic, 1, take));
@@ -143,8 +152,29 @@ bool VirtualCamera::is_complete() const
     return false;
   const ros::Time stamp = skin->header.stamp;
   return landmarks->header.stamp == stamp && state->header.stamp == stamp &&
-         (eyes->markers.empty() || eyes->markers[0].header.stamp == stamp) &&
+         (eyes->markers.empty() || eyes->markers[0].header.stamp == stamp) && skin->width > 0 &&
          skin->width == topology->vertices.size() && landmarks->poses.size() == state->landmark.size();
+}
+
+bool VirtualCamera::has_listeners() const
+{
+  const auto is_heard = [](const ros::Publisher* topic) { return topic->getNumSubscribers() > 0; };
+  const auto topics = { &info_, &rgb_, &depth_, &labels_, &points_, &landmarks_ };
+  return std::any_of(topics.begin(), topics.end(), is_heard);
+}
+
+// warns if somebody listens, but the face has sent no whole frame since the latest call
+void VirtualCamera::report_silence()
+{
+  if (std::exchange(was_complete_, false) || is_complete() || !has_listeners())
+    return;
+  std::string why;
+  for (const ros::Subscriber& input : subscribers_)
+    if (input.getNumPublishers() == 0)
+      why += (why.empty() ? "nobody publishes " : ", ") + input.getTopic();
+  if (why.empty())
+    why = "its node has not sent a whole frame; it may still be baking its model";
+  ROS_WARN("no picture of the face: %s", why.c_str());
 }
 
 // whether somebody listens, and the next picture is due
@@ -154,9 +184,7 @@ bool VirtualCamera::is_wanted() const
   // stamps that go back are those of a clock that started again
   if (stamp == pictured_ || (stamp > pictured_ && rate_ > 0 && (stamp - pictured_).toSec() < (1 - 1e-3) / rate_))
     return false;
-  const auto has_listeners = [](const ros::Publisher* topic) { return topic->getNumSubscribers() > 0; };
-  const auto topics = { &info_, &rgb_, &depth_, &labels_, &points_, &landmarks_ };
-  return std::any_of(topics.begin(), topics.end(), has_listeners);
+  return has_listeners();
 }
 
 // vertices and normals of the skin, and the landmarks, of the latest frame
@@ -179,9 +207,8 @@ SkinState VirtualCamera::skin() const
 // the vertices rest that are closest to the landmarks now.
 void VirtualCamera::find_appearance(const SkinState& skin)
 {
-  appearance_of_ = inputs_.topology;
   std::vector<std::array<float, 3>> rest;
-  for (const auto& p : appearance_of_->vertices)
+  for (const auto& p : inputs_.topology->vertices)
     rest.push_back({ static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z) });
   std::vector<std::array<float, 3>> places;
   for (const auto& landmark : skin.landmarks)
@@ -194,25 +221,36 @@ void VirtualCamera::find_appearance(const SkinState& skin)
   }
   appearance_ = skin_appearance(inputs_.state->landmark, places, rest);
   triangles_.clear();
-  for (const auto& triangle : appearance_of_->triangles)
+  for (const auto& triangle : inputs_.topology->triangles)
   {
     const auto& corners = triangle.vertex_indices;
     triangles_.push_back({ static_cast<std::int32_t>(corners[0]), static_cast<std::int32_t>(corners[1]),
                            static_cast<std::int32_t>(corners[2]) });
   }
+  appearance_of_ = inputs_.topology;  // last: after an exception, the next picture starts anew
 }
 
 // Waits for a transform that may come a little later than the messages of its frame. tf2's own waiting does not end
-// while a simulated clock stands still.
-RigidTransform VirtualCamera::transform(const std::string& to, const std::string& from, const ros::Time& stamp) const
+// while a simulated clock stands still. After it has waited in vain, it does not wait again before the missed transform
+// or a later one has come, so that a frame that nobody publishes does not hold up the other callbacks of this thread.
+RigidTransform VirtualCamera::transform(const std::string& to, const std::string& from, const ros::Time& stamp)
 {
-  const ros::WallTime deadline = ros::WallTime::now() + ros::WallDuration(patience);
-  while (!buffer_.canTransform(to, from, stamp) && ros::WallTime::now() < deadline && ros::ok())
-    ros::WallDuration(0.002).sleep();
-  return to_motion(buffer_.lookupTransform(to, from, stamp).transform);
+  const ros::Time latest;
+  ros::Time& missed = missed_[{ to, from }];
+  if (missed.isZero() || missed > stamp ||
+      (buffer_.canTransform(to, from, latest) && buffer_.lookupTransform(to, from, latest).header.stamp >= missed))
+  {
+    missed = stamp;
+    const ros::WallTime deadline = ros::WallTime::now() + ros::WallDuration(patience);
+    while (!buffer_.canTransform(to, from, stamp) && ros::WallTime::now() < deadline && ros::ok())
+      ros::WallDuration(0.002).sleep();
+  }
+  const RigidTransform found = to_motion(buffer_.lookupTransform(to, from, stamp).transform);
+  missed = ros::Time();
+  return found;
 }
 
-void VirtualCamera::add_bodies(const std::string& face_frame, const ros::Time& stamp, RenderScene& scene) const
+void VirtualCamera::add_bodies(const std::string& face_frame, const ros::Time& stamp, RenderScene& scene)
 {
   for (const auto& marker : inputs_.bodies->markers)
   {

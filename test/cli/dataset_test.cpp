@@ -4,7 +4,9 @@
 
 #include <png.h>
 
+#include <algorithm>
 #include <cstring>
+#include <fstream>
 #include <map>
 #include <sstream>
 
@@ -100,7 +102,24 @@ TEST(Dataset, WhatWasWrittenBeforeAnInterruptStaysValidAndIsContinued)
   const std::size_t count = lines_of(text_of(list)).size();
   ASSERT_GE(count, 2u);
   ASSERT_LT(count, 2000u);
-  ASSERT_EQ(run_program(dataset(cut, { "--frames", "2", "--first", std::to_string(count) })).code, 0);
+  // what does not continue the set is refused, and leaves it as it was
+  const auto files = files_of(cut);
+  const std::string next = std::to_string(count);
+  auto too_small = dataset(cut, {});
+  std::replace(too_small.begin(), too_small.end(), std::string("64,48"), std::string("0,48"));
+  for (const auto& [arguments, reason] :
+       { std::pair{ dataset(cut, { "--first", std::to_string(count - 1) }), "--first must be " + next },
+         { dataset(cut, { "--first", next, "--seed", "2" }), std::string("seed is 1") },
+         { too_small, std::string("0 x 48 pixels") } })
+  {
+    const ProgramResult refused = run_program(arguments);
+    EXPECT_EQ(refused.code, 1);
+    expect_contains(refused.errors, reason);
+    EXPECT_EQ(files_of(cut), files);
+  }
+  // as after a power failure
+  std::ofstream(list, std::ios::app) << R"({"frame":)" << next;
+  ASSERT_EQ(run_program(dataset(cut, { "--frames", "2", "--first", next })).code, 0);
   ASSERT_EQ(run_program(dataset(folder / "whole", { "--frames", std::to_string(count + 2) })).code, 0);
   EXPECT_EQ(text_of(list), text_of(folder / "whole/frames.jsonl"));
 }

@@ -194,6 +194,33 @@ TEST(Renderer, APatchIsWhereTheCameraModelSaysAndHidesWhatIsBehind)
   EXPECT_FALSE(renderer.sees({ 1, -0.4, 0.2 }));      // behind the camera
 }
 
+TEST(Renderer, DepthOfATriangleSeenEdgeOnIsBetweenThoseOfItsCorners)
+{
+  // triangles in the planes of the rays of columns, but for rounding
+  const PinholeCamera camera = camera_with(64, 48, 0.6);
+  int seen = 0;
+  for (int trial = 0; trial < 40; ++trial)
+  {
+    RenderMesh mesh;
+    for (int column = 0; column < camera.width; ++column)
+    {
+      for (const auto& [y, z] : { std::pair{ -0.1, 0.4 + 1e-3 * trial }, { 0.1, 0.45 }, { 0.02, 0.6 } })
+        mesh.vertices.push_back(
+            { static_cast<float>((column - camera.cx) / camera.fx * z), static_cast<float>(y), static_cast<float>(z) });
+      mesh.triangles.push_back({ 3 * column, 3 * column + 1, 3 * column + 2 });
+    }
+    finish(mesh);
+    for (const float depth : Renderer({ { mesh }, {} }, camera).images({}).depth)
+      if (depth != 0)
+      {
+        ++seen;
+        EXPECT_GE(depth, 0.4F);
+        EXPECT_LE(depth, 0.6F);
+      }
+  }
+  EXPECT_GT(seen, 100);
+}
+
 TEST(Renderer, BacksOfSurfacesAndEmptyScenesAreShownAsSuch)
 {
   RenderMesh plane;

@@ -110,6 +110,13 @@ class Camera(unittest.TestCase):
         self.assertEqual((shot["rgb"].width, shot["rgb"].height), (640, 480))
         self.assertGreater(shot["labels"].data.count(SKIN), 1000)
 
+    def test_camera_without_a_place_sends_nothing_and_the_others_go_on(self):
+        lost, first, second = (self.listen(camera) for camera in ("lost", "camera", "second"))
+        before = self.picture(first)["rgb"].header.stamp
+        for latest in (first, second):
+            self.picture(latest, lambda latest=latest: latest["rgb"].header.stamp > before)
+        self.assertEqual(lost, {})
+
 
 if __name__ == "__main__":
     rospy.init_node("camera_test")
