@@ -143,8 +143,8 @@ std::vector<Eyeball> eyeballs(const Model& model, const std::function<RigidTrans
     Point colour;
   };
   constexpr std::array<Cap, 3> caps{ { { 1, 0, { { 0.92F, 0.90F, 0.87F } } },
-                                       { 0.75, 0.483, { { 0.30F, 0.20F, 0.12F } } },
-                                       { 0.6, 0.18, { { 0.02F, 0.02F, 0.02F } } } } };
+                                       { 0.8, 0.483, { { 0.30F, 0.20F, 0.12F } } },
+                                       { 0.65, 0.18, { { 0.02F, 0.02F, 0.02F } } } } };
   std::vector<Eyeball> out;
   for (const ConstraintSurface& eye : model.constraint_surfaces)
   {

@@ -33,6 +33,7 @@ const Vector key_colour = { { 1.06f, 1.00f, 0.93f } };
 const Vector fill_colour = { { 0.16f, 0.19f, 0.24f } };
 const Vector sky_colour = { { 0.12f, 0.13f, 0.15f } };
 constexpr float gamma = 2.2f;            // of displays
+constexpr int smoothing_passes = 3;      // means over neighbours that hide the kinks of a bound skin at faces of voxels
 constexpr float hollow_depth = 5.0e-3f;  // fraction of light that a hollow loses, per mean curvature [m]
 
 }  // namespace
@@ -75,27 +76,46 @@ SkinShading::SkinShading(const TriangleMesh& mesh, const std::vector<Vector>& na
   }
 }
 
-void SkinShading::colours(const SkinState& skin, const std::vector<float>& values,
-                          std::vector<std::array<float, 3>>& out) const
+std::vector<float> SkinShading::curvatures(const SkinState& skin) const
 {
-  out.resize(skin.vertices.size());
-  for (std::size_t vertex = 0; vertex < skin.vertices.size(); ++vertex)
+  std::vector<float> out(skin.vertices.size(), 0.0f);
+  for (std::size_t vertex = 0; vertex < out.size(); ++vertex)
   {
     const Vector& position = skin.vertices[vertex];
-    const Vector& normal = skin.normals[vertex];
-
-    // mean normal curvature [1/m], positive in hollows: the mean over neighbours of twice the height above the tangent
-    // plane over the squared distance
-    float curvature = 0;
     const auto begin = neighbour_begin_[vertex], end = neighbour_begin_[vertex + 1];
     for (auto entry = begin; entry < end; ++entry)
     {
       const Vector& other = skin.vertices[neighbours_[entry]];
       const Vector edge = { { other[0] - position[0], other[1] - position[1], other[2] - position[2] } };
-      curvature += 2 * dot(edge, normal) / std::max(dot(edge, edge), 1e-8f);
+      out[vertex] += 2 * dot(edge, skin.normals[vertex]) / std::max(dot(edge, edge), 1e-8f);
     }
-    curvature /= static_cast<float>(std::max(1, end - begin));
-    const float openness = std::clamp(1 - hollow_depth * curvature, 0.45f, 1.12f);
+    out[vertex] /= static_cast<float>(std::max(1, end - begin));
+  }
+  return out;
+}
+
+void SkinShading::colours(const SkinState& skin, const std::vector<float>& values,
+                          std::vector<std::array<float, 3>>& out) const
+{
+  out.resize(skin.vertices.size());
+  std::vector<float> curvature = curvatures(skin), rough;
+  for (int pass = 0; pass < smoothing_passes; ++pass)
+  {
+    rough.swap(curvature);
+    curvature.resize(rough.size());
+    for (std::size_t vertex = 0; vertex < rough.size(); ++vertex)
+    {
+      float sum = rough[vertex];
+      const auto begin = neighbour_begin_[vertex], end = neighbour_begin_[vertex + 1];
+      for (auto entry = begin; entry < end; ++entry)
+        sum += rough[neighbours_[entry]];
+      curvature[vertex] = sum / static_cast<float>(1 + end - begin);
+    }
+  }
+  for (std::size_t vertex = 0; vertex < skin.vertices.size(); ++vertex)
+  {
+    const Vector& normal = skin.normals[vertex];
+    const float openness = std::clamp(1 - hollow_depth * curvature[vertex], 0.45f, 1.12f);
 
     const float key = dot(normal, key_light), fill = dot(normal, fill_light), sky = 0.5f + 0.5f * normal[2];
     const float highlight = 0.10f * std::pow(std::max(0.0f, dot(normal, half_way)), 22.0f);

@@ -273,32 +273,43 @@ TEST(Conversions, SkinThatIsNotFiniteOrNotWholeIsNotPublishable)
 
 TEST(Shading, LightComesFromAboveAndHollowsAreDarker)
 {
-  // a pyramid with four sides around vertex 0, seen from +x, with its apex pushed in or out
+  // a sheet that faces +x, with a dent or a bump in its middle
+  constexpr int edge = 9, middle = edge * edge / 2;
   TriangleMesh mesh;
-  mesh.vertices.assign(5, { { 0, 0, 0 } });
-  mesh.triangles = { { { 0, 1, 2 } }, { { 0, 2, 3 } }, { { 0, 3, 4 } }, { { 0, 4, 1 } } };
-  const SkinShading shading(mesh, SkinColours(5, { { 0.9F, 0.7F, 0.6F } }));
-  SkinState skin;
-  skin.vertices = {
-    { { 0, 0, 0 } }, { { 0, 0.01f, 0 } }, { { 0, 0, 0.01f } }, { { 0, -0.01f, 0 } }, { { 0, 0, -0.01f } }
+  mesh.vertices.assign(edge * edge, { { 0, 0, 0 } });
+  for (std::int32_t j = 0; j + 1 < edge; ++j)
+    for (std::int32_t i = j * edge; i + 1 < (j + 1) * edge; ++i)
+    {
+      mesh.triangles.push_back({ { i, i + 1, i + edge } });
+      mesh.triangles.push_back({ { i + 1, i + edge + 1, i + edge } });
+    }
+  const SkinShading shading(mesh, SkinColours(mesh.vertices.size(), { { 0.9F, 0.7F, 0.6F } }));
+  const auto sheet = [](float height)
+  {
+    SkinState skin;
+    skin.normals.assign(edge * edge, { { 1, 0, 0 } });
+    for (int n = 0; n < edge * edge; ++n)
+    {
+      const float y = 2e-3F * static_cast<float>(n % edge - edge / 2);
+      const float z = 2e-3F * static_cast<float>(n / edge - edge / 2);
+      skin.vertices.push_back({ { height * std::exp(-(y * y + z * z) / 32e-6F), y, z } });
+    }
+    return skin;
   };
-  skin.normals.assign(5, { { 1, 0, 0 } });
   std::vector<std::array<float, 3>> flat, hollow, raised;
-  shading.colours(skin, {}, flat);
-  skin.vertices[0][0] = -0.002f;
-  shading.colours(skin, {}, hollow);
-  skin.vertices[0][0] = 0.002f;
-  shading.colours(skin, {}, raised);
-  EXPECT_LT(hollow[0][0], flat[0][0]);
-  EXPECT_GT(raised[0][0], flat[0][0]);
+  shading.colours(sheet(0), {}, flat);
+  shading.colours(sheet(-2e-3F), {}, hollow);
+  shading.colours(sheet(2e-3F), {}, raised);
+  EXPECT_LT(hollow[middle][0], flat[middle][0]);
+  EXPECT_GT(raised[middle][0], flat[middle][0]);
 
   std::vector<std::array<float, 3>> up, down;
-  skin.vertices[0][0] = 0;
-  skin.normals.assign(5, { { 0.6f, 0, 0.8f } });
+  SkinState skin = sheet(0);
+  skin.normals.assign(skin.vertices.size(), { { 0.6f, 0, 0.8f } });
   shading.colours(skin, {}, up);
-  skin.normals.assign(5, { { 0.6f, 0, -0.8f } });
+  skin.normals.assign(skin.vertices.size(), { { 0.6f, 0, -0.8f } });
   shading.colours(skin, {}, down);
-  EXPECT_GT(up[0][1], down[0][1]);
+  EXPECT_GT(up[middle][1], down[middle][1]);
 }
 
 }  // namespace

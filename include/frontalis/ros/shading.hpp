@@ -27,6 +27,10 @@ public:
   void colours(const SkinState& skin, const std::vector<float>& values, std::vector<std::array<float, 3>>& out) const;
 
 private:
+  /// Mean normal curvature of each vertex [1/m], positive in hollows: the mean over neighbours of twice the height
+  /// above the tangent plane over the squared distance.
+  std::vector<float> curvatures(const SkinState& skin) const;
+
   std::vector<std::int32_t> neighbour_begin_;
   std::vector<std::int32_t> neighbours_;
   std::vector<std::array<float, 3>> albedo_;  // linear, before gamma
