@@ -19,7 +19,7 @@ struct PatchSettings
 /// What points that are bound to voxels ask of patches, for each voxel of the model; empty: nothing.
 struct BoundWork
 {
-  std::vector<float> cost;                        ///< of its points, relative to a voxel without effects
+  std::vector<float> cost;  ///< of its points, relative to a voxel without effects
   /// Other voxels whose nodes a patch that has the voxel needs as well. The relation is symmetric, so that patches that
   /// read each other's nodes wait for each other.
   std::vector<std::vector<std::int32_t>> beside;
