@@ -73,7 +73,8 @@ class Accuracy(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stdout)
         with open(profile, encoding="utf-8") as file:
             saved = file.read()
-        self.assertIn("voxel: 5 mm", saved)
+        # which of them is cheapest depends on the machine and its load
+        self.assertRegex(saved, r"voxel: (5|2\.5|2) mm")
         face = self.start("chosen", profile)
         told = self.line("chosen", "accuracy profile 'chosen'")
         # the log has the same figures, rounded to two digits
