@@ -220,11 +220,6 @@ geometry_msgs::Wrench to_wrench(const Model& model, const BodyShape& shape, cons
 visualization_msgs::MarkerArray to_bodies(const Model& model, const std::string& face_frame)
 {
   visualization_msgs::MarkerArray out;
-  // The first marker removes the bodies of the scene that was shown before.
-  visualization_msgs::Marker& removal = out.markers.emplace_back();
-  removal.header.frame_id = face_frame;
-  removal.pose.orientation.w = 1;
-  removal.action = visualization_msgs::Marker::DELETEALL;
   for (const BodyShape& shape : body_shapes(model))
   {
     visualization_msgs::Marker& marker = out.markers.emplace_back();

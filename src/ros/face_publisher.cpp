@@ -66,10 +66,10 @@ void FacePublisher::start(std::shared_ptr<const Model> model, const std::string&
   shading_ =
       std::make_unique<SkinShading>(model_->skin, skin_appearance(model_->landmarks, rest.landmarks, rest_).colours);
   topology_.publish(to_mesh(*model_));
-  bodies_.publish(to_bodies(*model_, face_frame_));
   landmark_vertices_ = landmark_vertices(*model_);
   standard_landmarks_ = standard_landmarks(*model_);
   lines_ = std::make_unique<MuscleLines>(*model_);
+  publish_bodies();
   shapes_ = body_shapes(*model_);
   const std::vector<BodyShape> bones = bone_shapes(*model_);
   wrenches_.clear();
@@ -91,6 +91,27 @@ void FacePublisher::start(std::shared_ptr<const Model> model, const std::string&
     transform.transform.rotation.w = 1;
     static_transforms_.sendTransform(transform);
   }
+}
+
+void FacePublisher::publish_bodies()
+{
+  visualization_msgs::MarkerArray bodies = to_bodies(*model_, face_frame_);
+  const auto shown = bodies.markers.size();
+  // Bodies of the scene that was shown before are removed by name: rviz may handle the markers of a message in any
+  // order while their frames are new, so that a removal of all markers could remove the new ones.
+  for (const BodyShape& former : shapes_)
+  {
+    if (former.surface == nullptr ||
+        std::any_of(bodies.markers.begin(), bodies.markers.begin() + static_cast<std::ptrdiff_t>(shown),
+                    [&](const auto& marker) { return marker.ns == former.name; }))
+      continue;
+    visualization_msgs::Marker& removal = bodies.markers.emplace_back();
+    removal.header.frame_id = face_frame_;
+    removal.ns = former.name;
+    removal.pose.orientation.w = 1;
+    removal.action = visualization_msgs::Marker::DELETE;
+  }
+  bodies_.publish(bodies);
 }
 
 void FacePublisher::set_colour(SkinColour colour, SkinField field, double range)

@@ -96,8 +96,7 @@ class Touch(unittest.TestCase):
         self.assertAlmostEqual(at[2], -sine * CENTRE[0] + cosine * CENTRE[2] + 0.0012, 6)
 
     def test_finger_is_shown(self):
-        # the first marker deletes the markers of another scene
-        marker = rospy.wait_for_message("/face/bodies", MarkerArray, 60).markers[1]
+        marker = rospy.wait_for_message("/face/bodies", MarkerArray, 60).markers[0]
         self.assertEqual(marker.header.frame_id, "face/body/press")
         self.assertTrue(marker.frame_locked)
         self.assertGreater(len(marker.points), 300)

@@ -79,6 +79,8 @@ private:
     boost::shared_ptr<Message> message{};
   };
 
+  /// Shows the bodies of the model in place of those of the model before, whose shapes are still in shapes_.
+  void publish_bodies();
   std::vector<float> shown_values(const Frame& frame) const;
 
   Topic<visualization_msgs::Marker> skin_;
