@@ -39,6 +39,7 @@ def moments(bag, options):
             start = now if start is None else start
             moment = now - start, dict(zip(names_of, (pose.position for pose in message.poses))), joints
             if start == now:
+                last = now
                 yield moment
             elif options.still:
                 # the last moment before the joints move again
