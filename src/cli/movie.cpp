@@ -53,9 +53,9 @@ void Movie::finish()
 {
   if (folder_ == path_)
     return;
-  // One palette without dithering keeps equal what does not move, so that a frame has only what does.
+  // One palette without dithering, and colours that count as equal within 2 %, leave only what moves in a frame.
   const std::string command =
-      fmt::format("convert -delay 1x{:g} -loop 0 {}/frame_*.png +dither -colors 128 +map -layers optimize {}",
+      fmt::format("convert -delay 1x{:g} -loop 0 {}/frame_*.png +dither -colors 128 +map -fuzz 2% -layers optimize {}",
                   frame_rate_, shell_word(folder_), shell_word(path_));
   if (std::system(command.c_str()) != 0)
     throw Error(path_ + ": cannot be written by: " + command + "; its frames are in " + folder_);
