@@ -56,6 +56,18 @@ def write(path, rows):
         csv.writer(file, lineterminator="\n").writerows(rows)
 
 
+def joint_table(used):
+    names = list(used[0][2].name)
+    has_efforts = all(len(joints.effort) == len(joints.name) for _, _, joints in used)
+    table = [["time_s"] + names + [name + ".effort" for name in names if has_efforts]]
+    for now, _, joints in used:
+        row = ["%.6f" % now]
+        for values in [joints.position] + [joints.effort] * has_efforts:
+            row += ["%.9g" % dict(zip(joints.name, values))[name] for name in names]
+        table.append(row)
+    return table
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("bag")
@@ -81,13 +93,7 @@ def main():
                 landmarks.append(["%.6f" % now, name] + ["%.6f" % (1e3 * value) for value in moved])
         write(os.path.join(options.folder, "landmarks.csv"), landmarks)
         if all(joints is not None for _, _, joints in used):
-            names = list(used[0][2].name)
-            table = [["time_s"] + [column for name in names for column in (name, name + ".effort")]]
-            for now, _, joints in used:
-                efforts = dict(zip(joints.name, joints.effort)) or dict.fromkeys(joints.name, 0)
-                positions = dict(zip(joints.name, joints.position))
-                table.append(["%.6f" % now] + ["%.9g" % value for name in names for value in (positions[name], efforts[name])])
-            write(os.path.join(options.folder, "joints.csv"), table)
+            write(os.path.join(options.folder, "joints.csv"), joint_table(used))
     except (OSError, rosbag.ROSBagException) as error:
         fail(str(error))
     print("%d times in %s" % (len(used), options.folder))
