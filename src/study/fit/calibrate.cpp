@@ -23,12 +23,12 @@ using Eigen::VectorXd;
 
 constexpr double margin = 1.2;           // range of a measured influence over that of the given motions
 constexpr double deviation = 1e-4;       // standard deviation of landmarks [m]
-constexpr double gain_deviation = 1;     // standard deviation of gains before the measurement, about 1
+constexpr double gain_deviation = 1;     // of gains from 1, for those that the poses leave open
 constexpr int iterations = 10;           // of the Gauss-Newton method
 constexpr double millimetre = 1e-3;      // [m]
 constexpr double degree = 0.0174532925;  // [rad]
 
-// The poses as vectors, and the model of their landmarks.
+// The recorded poses as vectors, and what the latest simulation has shown of each.
 struct Poses
 {
   std::vector<VectorXd> position, effort;  // per actuator
@@ -40,6 +40,7 @@ struct Poses
 std::vector<Index> coordinates_of(const Model& model, const LandmarkTrack& track)
 {
   std::vector<Index> out;
+  out.reserve(3 * track.landmarks.size());
   for (const std::size_t landmark : landmarks_of(model, track))
     for (const Index axis : { 0, 1, 2 })
       out.push_back(static_cast<Index>(3 * landmark) + axis);
@@ -89,6 +90,7 @@ std::vector<Unknown> parts_of(const std::vector<Actuator>& actuators, const Pose
     }
   }
   std::vector<Unknown> out;
+  out.reserve(parts.size());
   for (const auto& [name, part] : parts)
   {
     if (!(part.lower < part.upper))
@@ -174,6 +176,8 @@ ActuatorTrack read_actuator_track(const std::string& path, const std::vector<Act
   const std::size_t time = needed("time_s");
   std::vector<std::size_t> positions;
   std::vector<std::optional<std::size_t>> efforts;
+  positions.reserve(actuators.size());
+  efforts.reserve(actuators.size());
   for (const Actuator& actuator : actuators)
   {
     positions.push_back(needed(actuator.name));
@@ -210,6 +214,8 @@ Calibration calibrate(const std::shared_ptr<const Model>& model, const std::vect
 
   const std::size_t count = poses.position.size();
   std::vector<std::size_t> used, all;
+  used.reserve(count);
+  all.reserve(count);
   for (std::size_t p = 0; p < count; ++p)
   {
     all.push_back(p);
