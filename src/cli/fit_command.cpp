@@ -3,7 +3,7 @@
 #include "cli/progress.hpp"
 
 #include "frontalis/error.hpp"
-#include "frontalis/study/fit.hpp"
+#include "frontalis/study/calibrate.hpp"
 
 #include <fmt/format.h>
 
@@ -86,6 +86,29 @@ void retarget_track(FitOptions& options)
   write_text(options.activations, activations_of(result));
 }
 
+struct CalibrationOptions : FitOptions
+{
+  std::string joints, actuators, output;
+  int hold_out = 4;
+};
+
+void calibrate_robot(CalibrationOptions& options)
+{
+  const auto actuators = read_actuators(options.actuators);
+  const ActuatorTrack joints = read_actuator_track(options.joints, actuators);
+  const LandmarkTrack landmarks = read_landmark_track(options.track);
+  const auto model = std::make_shared<const Model>(obtain_model(options.source));
+  CalibrationSettings settings{ options.settings, options.hold_out };
+  settings.cache = options.source.cache;
+  Progress progress;
+  show_progress(settings, progress);
+  const std::string text = yaml_of(calibrate(model, actuators, joints, landmarks, settings));
+  progress.clear();
+  fmt::print("{}", text);
+  if (!options.output.empty())
+    write_text(options.output, text);
+}
+
 CLI::App* add_command(CLI::App& app, const std::string& name, const std::string& text, FitOptions& options)
 {
   CLI::App* command = app.add_subcommand(name, text);
@@ -128,6 +151,27 @@ void add_retarget_command(CLI::App& app)
   options->settings.runs = 3;
   command->get_option("--runs")->description("simulations of the whole track that correct the answer (3; 0: none)");
   command->callback([options] { retarget_track(*options); });
+}
+
+void add_calibrate_command(CLI::App& app)
+{
+  const auto options = std::make_shared<CalibrationOptions>();
+  CLI::App* command = add_command(
+      app, "calibrate", "find gains of a robot's actuators and the modulus of its skin from babbled poses", *options);
+  command
+      ->add_option("JOINTS", options->joints,
+                   "table (CSV) of poses: time_s, the position of each actuator, and ACTUATOR.effort where it is known")
+      ->required();
+  command->add_option("LANDMARKS", options->track, "table (CSV) of the landmarks at these times, as that of retarget")
+      ->required();
+  command->add_option("--actuators", options->actuators, "file of actuators and the motion they should cause (YAML)")
+      ->required();
+  command->add_option("-o,--output", options->output, "file to write the answer to (YAML), as --actuators takes it");
+  command->add_option("--hold-out", options->hold_out, "hold out one in so many poses, to test the answer (4; 0: none)")
+      ->check(CLI::Range(0, 1000));
+  options->settings.runs = 1;
+  command->get_option("--runs")->description("simulations of every pose that correct the answer (1; 0: none)");
+  command->callback([options] { calibrate_robot(*options); });
 }
 
 }  // namespace frontalis

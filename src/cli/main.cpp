@@ -47,6 +47,7 @@ int main(int argc, char** argv)
   frontalis::add_gltf_command(app);
   frontalis::add_fit_command(app);
   frontalis::add_retarget_command(app);
+  frontalis::add_calibrate_command(app);
   frontalis::add_accuracy_command(app);
   frontalis::add_stability_command(app);
 

@@ -1,6 +1,7 @@
 #include "cli/command_options.hpp"
 #include "cli/given_controls.hpp"
 #include "cli/model_source.hpp"
+#include "cli/movie.hpp"
 #include "cli/progress.hpp"
 #include "cli/reactions.hpp"
 #include "cli/run_output.hpp"
@@ -40,7 +41,7 @@ struct RunOptions
   bool demo = false;
   double seconds = 1;
   bool seconds_given = false;
-  std::string frames, plot;
+  std::string frames, plot, movie;
   bool wrinkles = false;
   std::vector<double> wrinkles_in;  ///< least left and up, greatest left and up [mm]; empty: everywhere
   bool vtp = false;
@@ -58,6 +59,7 @@ struct Run
   Solver& solver;
   std::optional<FrameFolder> folder;
   std::optional<ReactionPlot> plot{};
+  std::optional<Movie> movie{};
   std::optional<Guard> guard{};
   std::unique_ptr<FineLines> fine_lines{};
   RunSummary summary{};
@@ -128,6 +130,8 @@ void Run::play()
 {
   const double frame_rate = options.frame_rate > 0 ? options.frame_rate : model.frame_rate;
   const auto frames = static_cast<int>(std::max(1.0, std::ceil(options.seconds * frame_rate * (1 - 1e-9))));
+  if (!options.movie.empty())
+    movie.emplace(options.movie, frame_rate, model);
   const double begin = wall_seconds();
   Progress progress;
   for (int frame = 0; frame <= frames && summary.complete; ++frame)
@@ -142,6 +146,8 @@ void Run::play()
       folder->add(time, summary.end, summary.bodies);
     if (plot)
       plot->add(time, summary.bodies);
+    if (movie)
+      movie->add(summary.end, solver.controls());
     summary.frames = frame + 1;
     summary.wall = wall_seconds() - begin;
     progress.update("running", static_cast<double>(frame) / frames);
@@ -182,8 +188,8 @@ void check_options(const RunOptions& options)
   if (options.demo && (!options.activation.empty() || !options.expression.empty() || !options.activation_file.empty() ||
                        !options.bones.empty() || options.to_equilibrium))
     throw WrongUsage("--demo goes with none of --activate, --expression, --activations, --bone, --to-equilibrium");
-  if (!options.plot.empty() && options.to_equilibrium)
-    throw WrongUsage("--plot: there is no time on the way to equilibrium");
+  if ((!options.plot.empty() || !options.movie.empty()) && options.to_equilibrium)
+    throw WrongUsage("--plot and --movie: there is no time on the way to equilibrium");
   if (options.vtp && options.frames.empty())
     throw WrongUsage("--vtp goes with --frames, which names the folder");
   plot_path(options.plot);
@@ -301,6 +307,8 @@ void simulate(RunOptions& options)
     run.folder->finish(json_of(*model, summary));
   if (run.plot)
     run.plot->write();
+  if (run.movie)
+    run.movie->finish();
   print_result(*model, summary);
   if (!summary.complete)
     throw Interrupted();
@@ -348,6 +356,8 @@ void add_run_command(CLI::App& app)
                     "write the frames also as skin_NNNN.vtp, with displacements, and skin.pvd for ParaView");
   command->add_option("--plot", options->plot,
                       "FILE.png, and FILE.svg beside it: force on bodies that tissue touches, over time");
+  command->add_option("--movie", options->movie,
+                      "FILE.gif, drawn without a display and joined by ImageMagick, or a folder for frame_NNNN.png");
   command->add_flag("--wrinkles", options->wrinkles,
                     "measure the furrows that the skin has at the end and not at rest");
   command

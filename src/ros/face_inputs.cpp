@@ -153,6 +153,15 @@ void FaceInputs::set_bones(Runner& running, double time) const
       running.set_bone(model_->bones[bone], motion_in_face(*model_, now.bone[bone]));
 }
 
+std::uint64_t FaceInputs::messages() const
+{
+  const std::lock_guard<std::mutex> lock(mutex_);
+  std::uint64_t count = 0;
+  for (const auto& [topic, series] : topics_)
+    count += series.taken + series.refused;
+  return count;
+}
+
 void FaceInputs::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) const
 {
   using diagnostic_msgs::DiagnosticStatus;

@@ -252,7 +252,9 @@ void FaceNode::repeat_frame_and_play()
     running = runner_;
     // in lock-step, ~step plays the demo and the commands instead
     steps_by_itself = parameters_.runner.pace != Pace::lock_step;
-    if ((ros::WallTime::now() - last_published_).toSec() > repetition_period)
+    // a replay in simulated time must give each frame once
+    const bool once = ros::Time::isSimTime() && !steps_by_itself;
+    if (!once && (ros::WallTime::now() - last_published_).toSec() > repetition_period)
     {
       last_published_ = ros::WallTime::now();
       // resend the frame of a face that stands still, for late subscribers

@@ -71,6 +71,7 @@ bool FaceNode::on_step(Step::Request& request, Step::Response& response)
           throw Error("another step is under way");
         Frame frame;
         double left = request.seconds;
+        paused_ = true;  // frames of this step must say so already
         do
         {
           const double time = time_;
@@ -128,6 +129,8 @@ bool FaceNode::on_list_muscles(ListMuscles::Request&, ListMuscles::Response& res
                   for (const auto& expression : model.expressions)
                     response.expressions.push_back(expression.name);
                   response.expressions.push_back("relax");
+                  response.messages = inputs_.messages();
+                  response.stamp = ros::Time::now();
                   for (const auto& unit : model.action_units)
                     response.action_units.push_back(unit.name);
                 });

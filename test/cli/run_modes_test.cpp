@@ -127,6 +127,33 @@ TEST_F(RunModes, wrong_tables_are_told_with_their_line)
   }
 }
 
+TEST_F(RunModes, a_movie_has_a_picture_per_frame)
+{
+  const auto run_to = [&](const std::string& movie)
+  {
+    return run_program({ "run", std::string(FRONTALIS_SOURCE_DIRECTORY) + "/test/ros/small.yaml", "--expression",
+                         "shorten", "--seconds", "0.1", "--frame-rate", "50", "--movie", folder / movie });
+  };
+  const auto pictures = run_to("pictures");
+  ASSERT_EQ(pictures.code, 0) << pictures.errors;
+  EXPECT_EQ(text_of(folder / "pictures/frame_0000.png").substr(1, 3), "PNG");
+  EXPECT_TRUE(text_of(folder / "pictures/frame_0000.png") != text_of(folder / "pictures/frame_0005.png"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "pictures/frame_0006.png"));
+  const auto joined = run_to("it's.gif");
+  if (joined.code != 0 && joined.errors.find("imagemagick") != std::string::npos)
+    GTEST_SKIP() << joined.errors;
+  ASSERT_EQ(joined.code, 0) << joined.errors;
+  const std::string gif = text_of(folder / "it's.gif");
+  EXPECT_EQ(gif.substr(0, 6), "GIF89a");
+  // each frame begins with a block that says for how long it is shown: 2 hundredths of a second
+  int shown = 0;
+  for (auto at = gif.find("\x21\xf9\x04"); at != std::string::npos; at = gif.find("\x21\xf9\x04", at + 1))
+    if (gif[at + 4] == 2 && gif[at + 5] == 0)
+      ++shown;
+  EXPECT_EQ(shown, 6);
+  EXPECT_FALSE(std::filesystem::exists(folder / "it's.gif.frames"));
+}
+
 TEST_F(RunModes, the_ledger_of_a_shortening_bar_closes)
 {
   const ProgramResult result =

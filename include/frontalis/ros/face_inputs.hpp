@@ -63,6 +63,8 @@ public:
   /// The activations that are commanded for a simulated time [s].
   std::map<std::string, double> target(double time) const;
 
+  /// Number of messages that were taken or refused.
+  std::uint64_t messages() const;
   void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) const;
 
 private:

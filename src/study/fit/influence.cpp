@@ -1,6 +1,5 @@
 #include "study/fit/influence.hpp"
 
-#include "frontalis/runner/face_frame.hpp"
 #include "frontalis/study/step_time.hpp"
 
 #include <fmt/format.h>

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "frontalis/runner/face_frame.hpp"
 #include "frontalis/runner/named_controls.hpp"
 #include "frontalis/solver/guard.hpp"
 #include "frontalis/study/fit.hpp"
@@ -30,6 +31,9 @@ public:
   /// Places of the landmarks at each of the given times, under controls that change linearly between knots.
   std::vector<Eigen::VectorXd> play(const ControlCurve& curve, const std::vector<double>& times);
 
+  /// The bones, and the forces of the tissue on them.
+  std::vector<BodyFrame> bones() { return bones_in_face_frame(*solver_, *model_, true); }
+
   const Model& model() const { return *model_; }
 
 private:
@@ -59,6 +63,9 @@ struct Influence
 /// and adds them to the file, unless the folder cannot be written. `seconds` receives the wall time of the measurement.
 Influence obtain_influence(ForwardRuns& runs, const std::vector<Unknown>& unknowns, const FitSettings& settings,
                            double& seconds);
+
+/// Indices of the track's landmarks in the model. Throws Error if the model lacks one.
+std::vector<std::size_t> landmarks_of(const Model& model, const LandmarkTrack& track);
 
 /// The value of an unknown at rest: the tone of a muscle, or 0 for a bone.
 double rest_value(const Model& model, const std::string& unknown);

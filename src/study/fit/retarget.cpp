@@ -18,22 +18,6 @@ using Eigen::VectorXd;
 
 constexpr double millimetre = 1e-3;
 
-// the landmarks of the model that the track has
-std::vector<std::size_t> landmarks_of(const Model& model, const LandmarkTrack& track)
-{
-  std::vector<std::size_t> out;
-  out.reserve(track.landmarks.size());
-  for (const std::string& name : track.landmarks)
-  {
-    const auto found = std::find(model.landmarks.begin(), model.landmarks.end(), name);
-    if (found == model.landmarks.end())
-      throw Error(fmt::format("the track has a landmark '{}'; those of the model are {}", name,
-                              fmt::join(model.landmarks, ", ")));
-    out.push_back(static_cast<std::size_t>(found - model.landmarks.begin()));
-  }
-  return out;
-}
-
 // displacements from rest per time; NaN for landmarks that the track does not have
 std::vector<VectorXd> targets_of(const LandmarkTrack& track, const std::vector<std::size_t>& landmarks, Index size)
 {
@@ -93,6 +77,21 @@ double mean_error(const std::vector<RetargetResult::Row>& rows)
 }
 
 }  // namespace
+
+std::vector<std::size_t> landmarks_of(const Model& model, const LandmarkTrack& track)
+{
+  std::vector<std::size_t> out;
+  out.reserve(track.landmarks.size());
+  for (const std::string& name : track.landmarks)
+  {
+    const auto found = std::find(model.landmarks.begin(), model.landmarks.end(), name);
+    if (found == model.landmarks.end())
+      throw Error(fmt::format("the track has a landmark '{}'; those of the model are {}", name,
+                              fmt::join(model.landmarks, ", ")));
+    out.push_back(static_cast<std::size_t>(found - model.landmarks.begin()));
+  }
+  return out;
+}
 
 LandmarkTrack read_landmark_track(const std::string& path)
 {

@@ -1,0 +1,65 @@
+#include "cli/movie.hpp"
+
+#include "frontalis/error.hpp"
+#include "frontalis/render/png.hpp"
+#include "frontalis/study/table.hpp"
+
+#include <fmt/core.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <utility>
+
+namespace frontalis
+{
+namespace
+{
+
+// a word of a shell command
+std::string shell_word(const std::string& text)
+{
+  std::string out = "'";
+  for (const char c : text)
+    out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
+}
+
+}  // namespace
+
+Movie::Movie(std::string path, double frame_rate, const Model& model)
+    : path_(std::move(path)), folder_(path_), frame_rate_(frame_rate), model_(model)
+{
+  if (std::filesystem::path(path_).extension() == ".gif")
+  {
+    if (std::system("command -v convert >/dev/null 2>&1") != 0)
+      throw Error(
+          "--movie " + path_ +
+          ": ImageMagick's program convert is missing (Debian's package imagemagick); a folder takes the frames");
+    folder_ += ".frames";
+    std::filesystem::remove_all(folder_);
+  }
+  make_folder(folder_);
+}
+
+void Movie::add(const SkinState& skin, const Controls& controls)
+{
+  if (!portrait_)
+    portrait_.emplace(model_, skin);
+  write_text(fmt::format("{}/frame_{:04}.png", folder_, frames_++),
+             png_of(portrait_->draw(skin, controls).data(), Portrait::width, Portrait::height, 3));
+}
+
+void Movie::finish()
+{
+  if (folder_ == path_)
+    return;
+  // One palette without dithering, and colours that count as equal within 2 %, leave only what moves in a frame.
+  const std::string command =
+      fmt::format("convert -delay 1x{:g} -loop 0 {}/frame_*.png +dither -colors 128 +map -fuzz 2% -layers optimize {}",
+                  frame_rate_, shell_word(folder_), shell_word(path_));
+  if (std::system(command.c_str()) != 0)
+    throw Error(path_ + ": cannot be written by: " + command + "; its frames are in " + folder_);
+  std::filesystem::remove_all(folder_);
+}
+
+}  // namespace frontalis

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "frontalis/study/portrait.hpp"
+
+#include <optional>
+#include <string>
+
+namespace frontalis
+{
+
+/// Draws the frames of a motion, without a display, and joins them to an animated GIF.
+class Movie
+{
+public:
+  /// `path`: a file that ends in .gif, or a folder that receives frame_NNNN.png. The model must outlive this. Throws
+  /// Error if the folder of the frames cannot be made, or ImageMagick, which joins them, is missing.
+  Movie(std::string path, double frame_rate, const Model& model);
+
+  /// Draws a frame; the skin is in the face frame, and that of the first frame is the face at rest.
+  void add(const SkinState& skin, const Controls& controls);
+  /// Joins the frames and removes their folder, unless the folder is what was asked for. Throws Error if that fails.
+  void finish();
+
+private:
+  std::string path_, folder_;
+  double frame_rate_;
+  const Model& model_;
+  std::optional<Portrait> portrait_{};
+  int frames_ = 0;
+};
+
+}  // namespace frontalis
