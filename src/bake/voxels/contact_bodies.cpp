@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <memory>
 
 namespace frontalis
@@ -144,6 +145,53 @@ std::int32_t bone_of(const std::string& name, Model& model)
   return bone;
 }
 
+// Axis along which a vector is longest, from 0 to 2, or from 3 to 5 against that axis.
+int main_direction(const Vector3d& v)
+{
+  Eigen::Index axis = 0;
+  v.cwiseAbs().maxCoeff(&axis);
+  return static_cast<int>(v[axis] < 0 ? axis + 3 : axis);
+}
+
+// Merges points of a voxel that face the same way, because more points make the pressure on its nodes no better but
+// each of them costs time. The point nearest to their common centroid remains, with the area of all of them: a centroid
+// would not be on the surface.
+void thin_out(const TriangleMesh& surface, Contact& contact)
+{
+  std::vector<Vector3d> normal(contact.points.size(), Vector3d::Zero());
+  for (const Triangle& t : surface.triangles)
+  {
+    const auto [a, b, c] = corners(surface, t);
+    for (const std::int32_t v : t)
+      normal[v] += (b - a).cross(c - a);
+  }
+  std::map<std::pair<std::int32_t, int>, std::vector<std::size_t>> sides;
+  for (std::size_t p = 0; p < normal.size(); ++p)
+    sides[{ contact.binding.voxel[p], main_direction(normal[p]) }].push_back(p);
+  Contact thin;
+  for (const auto& [side, points] : sides)
+  {
+    Vector3d centroid = Vector3d::Zero();
+    double area = 0;
+    for (const std::size_t p : points)
+    {
+      centroid += contact.area[p] * to_vector(contact.points[p]);
+      area += contact.area[p];
+    }
+    centroid /= std::max(area, std::numeric_limits<double>::min());
+    const auto off = [&](std::size_t p) { return (to_vector(contact.points[p]) - centroid).squaredNorm(); };
+    const std::size_t kept =
+        *std::min_element(points.begin(), points.end(), [&](std::size_t a, std::size_t b) { return off(a) < off(b); });
+    thin.points.push_back(contact.points[kept]);
+    thin.area.push_back(area);
+    thin.binding.voxel.push_back(side.first);
+    thin.binding.coordinates.push_back(contact.binding.coordinates[kept]);
+  }
+  contact.points = std::move(thin.points);
+  contact.area = std::move(thin.area);
+  contact.binding = std::move(thin.binding);
+}
+
 // Throws Error if tissue is in a body at rest, because contact would throw the tissue out.
 void check_overlap(const Scene& scene, const std::string& place, const Contact& contact,
                    const std::vector<Body>& bodies, const LocalFrame& frame, const Model& model)
@@ -221,6 +269,7 @@ void bind_contacts(const Scene& scene, const PreparedSurfaces& surfaces, const L
                                 constraint.name, bound.too_far, on));
     set_points(contact, bound.mesh, bound.binding);
     check_overlap(scene, place, contact, bodies, frame, model);
+    thin_out(bound.mesh, contact);
     model.contacts.push_back(std::move(contact));
   }
 }
