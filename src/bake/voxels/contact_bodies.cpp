@@ -145,47 +145,37 @@ std::int32_t bone_of(const std::string& name, Model& model)
   return bone;
 }
 
-// Axis along which a vector is longest, from 0 to 2, or from 3 to 5 against that axis.
-int main_direction(const Vector3d& v)
+// Merges the points that lie in the same eighth of a voxel into one at their centroid, with the area of all of them.
+// More points distribute a pressure no better to the nodes of voxels, but each of them costs time.
+void thin_out(Contact& contact)
 {
-  Eigen::Index axis = 0;
-  v.cwiseAbs().maxCoeff(&axis);
-  return static_cast<int>(v[axis] < 0 ? axis + 3 : axis);
-}
-
-// Merges points of a voxel that face the same way, because more points make the pressure on its nodes no better but
-// each of them costs time. The point nearest to their common centroid remains, with the area of all of them: a centroid
-// would not be on the surface.
-void thin_out(const TriangleMesh& surface, Contact& contact)
-{
-  std::vector<Vector3d> normal(contact.points.size(), Vector3d::Zero());
-  for (const Triangle& t : surface.triangles)
+  std::map<std::array<int, 4>, std::vector<std::size_t>> cells;
+  for (std::size_t p = 0; p < contact.points.size(); ++p)
   {
-    const auto [a, b, c] = corners(surface, t);
-    for (const std::int32_t v : t)
-      normal[v] += (b - a).cross(c - a);
+    const auto& at = contact.binding.coordinates[p];
+    const auto half = [&](std::size_t axis) { return static_cast<int>(std::floor(2 * at[axis])); };
+    cells[{ contact.binding.voxel[p], half(0), half(1), half(2) }].push_back(p);
   }
-  std::map<std::pair<std::int32_t, int>, std::vector<std::size_t>> sides;
-  for (std::size_t p = 0; p < normal.size(); ++p)
-    sides[{ contact.binding.voxel[p], main_direction(normal[p]) }].push_back(p);
   Contact thin;
-  for (const auto& [side, points] : sides)
+  for (const auto& [cell, points] : cells)
   {
-    Vector3d centroid = Vector3d::Zero();
     double area = 0;
+    Vector3d place = Vector3d::Zero(), in_voxel = Vector3d::Zero();
     for (const std::size_t p : points)
     {
-      centroid += contact.area[p] * to_vector(contact.points[p]);
+      const auto& at = contact.binding.coordinates[p];
       area += contact.area[p];
+      place += contact.area[p] * to_vector(contact.points[p]);
+      in_voxel += contact.area[p] * Vector3d(at[0], at[1], at[2]);
     }
-    centroid /= std::max(area, std::numeric_limits<double>::min());
-    const auto off = [&](std::size_t p) { return (to_vector(contact.points[p]) - centroid).squaredNorm(); };
-    const std::size_t kept =
-        *std::min_element(points.begin(), points.end(), [&](std::size_t a, std::size_t b) { return off(a) < off(b); });
-    thin.points.push_back(contact.points[kept]);
+    if (!(area > 0))
+      continue;
+    const Vector3d at = in_voxel / area;
+    thin.points.push_back(to_array(place / area));
     thin.area.push_back(area);
-    thin.binding.voxel.push_back(side.first);
-    thin.binding.coordinates.push_back(contact.binding.coordinates[kept]);
+    thin.binding.voxel.push_back(cell[0]);
+    thin.binding.coordinates.push_back(
+        { static_cast<float>(at[0]), static_cast<float>(at[1]), static_cast<float>(at[2]) });
   }
   contact.points = std::move(thin.points);
   contact.area = std::move(thin.area);
@@ -269,7 +259,7 @@ void bind_contacts(const Scene& scene, const PreparedSurfaces& surfaces, const L
                                 constraint.name, bound.too_far, on));
     set_points(contact, bound.mesh, bound.binding);
     check_overlap(scene, place, contact, bodies, frame, model);
-    thin_out(bound.mesh, contact);
+    thin_out(contact);
     model.contacts.push_back(std::move(contact));
   }
 }
