@@ -22,6 +22,8 @@ bool is_rigid_motion(const RigidTransform& pose)
 
 RigidTransform interpolate(const RigidTransform& from, const RigidTransform& to, double fraction)
 {
+  if (from.rotation == to.rotation && from.translation == to.translation)
+    return to;  // the formula would move it by rounding errors
   // axis and angle of the rotation from `from` to `to`; Rodrigues' formula applies the fraction of it
   const auto& a = from.rotation;
   const auto& b = to.rotation;

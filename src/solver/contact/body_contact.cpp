@@ -15,6 +15,20 @@ namespace
 
 using Vector = physics::Vec3<double>;
 
+// Asks the memory for the samples around x, in the frame of the field.
+void fetch_samples(const physics::DistanceField& field, const Vector& x)
+{
+  if (field.radius > 0)
+    return;
+  const float* samples = field.around(physics::field_point(field, x).cell);
+  for (int plane = 0; plane < 3 && samples != nullptr; ++plane)
+  {
+    __builtin_prefetch(samples);
+    __builtin_prefetch(samples + 2 * physics::DistanceField::brick_row + 2);
+    samples += physics::DistanceField::brick_row * physics::DistanceField::brick_row;
+  }
+}
+
 }  // namespace
 
 template <class Real>
@@ -140,14 +154,14 @@ std::vector<BodyState> BodyContact<Real>::next(const ConstraintStep& step) const
 }
 
 template <class Real>
-void BodyContact<Real>::voxel_readings(std::size_t p, const Real* const u[3], const BodyState& body, double response)
+void BodyContact<Real>::find_force(std::size_t p, const Vector& x, const BodyState& body, double response)
 {
   const Point& point = points_[p];
   const double stiffness = double(point.stiffness);
   const Contact& contact = model_.contacts[point.body];
   const physics::DistanceField& field = fields_[point.body];
   const physics::Pose pose = pose_of(body.pose);
-  const Vector x = pose.inwards(place(point, u)), arm = pose.turned(x);
+  const Vector arm = pose.turned(x);
   physics::FieldValue<double> value{};
   const bool sampled = physics::sample(field, physics::field_point(field, x), value);
   physics::Grip<double>& grip = grips_[p];
@@ -185,11 +199,20 @@ void BodyContact<Real>::before_step(const NodeShare& share, const Real* const u[
     if (chunk.due > now.front().way)
       continue;
     chunk = { std::numeric_limits<double>::max(), 0 };
-    for (std::size_t p = c * chunk_size; p < std::min((c + 1) * chunk_size, points_.size()); ++p)
+    const std::size_t first = c * chunk_size, last = std::min(first + chunk_size, points_.size());
+    // Samples are far apart in memory: all of a chunk are requested before the first of them is needed.
+    Vector x[chunk_size];
+    for (std::size_t p = first; p < last; ++p)
+      if (const BodyState& body = now[points_[p].body]; !(due_[p] > body.way))
+      {
+        x[p - first] = pose_of(body.pose).inwards(place(points_[p], u));
+        fetch_samples(fields_[points_[p].body], x[p - first]);
+      }
+    for (std::size_t p = first; p < last; ++p)
     {
       const BodyState& body = now[points_[p].body];
       if (!(due_[p] > body.way))
-        voxel_readings(p, u, body, response);
+        find_force(p, x[p - first], body, response);
       chunk.due = std::min(chunk.due, due_[p]);
       chunk.touches |= touches_[p] != Touching::no ? 1 : 0;
     }

@@ -119,7 +119,8 @@ private:
   Energy energy_now(const Real* const u[3], const std::vector<RigidTransform>& bones,
                     std::vector<std::array<double, 3>>& forces) const;
   std::vector<BodyState> next(const ConstraintStep& step) const;
-  void voxel_readings(std::size_t p, const Real* const u[3], const BodyState& body, double response);
+  /// Finds the force on a point at x, in the frame of its body.
+  void find_force(std::size_t p, const Vector& x, const BodyState& body, double response);
   physics::Grip<double> grip_at(std::size_t p, const Vector& x) const
   {
     const auto& grip = grips_[p];

@@ -25,7 +25,9 @@ void slide_plainly(const SlideArguments<Real>& g, std::int32_t first, std::int32
         g.renew(g.context, block, l, at, with);
         v = { with[0], with[1], with[2] };
       }
-      physics::slide({ b.normal[0][l], b.normal[1][l], b.normal[2][l] }, b.offset[l], u, v);
+      const Vector normal{ b.normal[0][l], b.normal[1][l], b.normal[2][l] };
+      physics::slide(normal, b.offset[l], u, v);
+      v = v + b.speed[l] * normal;
       const Real moved[3] = { u.x, u.y, u.z }, velocity[3] = { v.x, v.y, v.z };
       for (int axis = 0; axis < 3; ++axis)
       {

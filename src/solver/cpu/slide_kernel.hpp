@@ -13,6 +13,7 @@ struct SlidingBlock
 
   Real normal[3][width];
   Real offset[width];
+  Real speed[width];         ///< velocity of the plane along its normal [m/s]
   Real reference[3][width];  ///< displacement at which the plane was found
   Real slip_squared[width];  ///< squared distance over which the plane is valid; negative: no plane yet
 };

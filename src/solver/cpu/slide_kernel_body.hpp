@@ -50,7 +50,9 @@ struct SlideKernelBody
       if (xsimd::any(excess > Batch(0.0f)))
         renew(g, block, l, u, v, excess);
       Vector velocity = load(v[0] + l, v[1] + l, v[2] + l);
-      physics::slide(load(b.normal[0] + l, b.normal[1] + l, b.normal[2] + l), load(b.offset + l), at, velocity);
+      const Vector normal = load(b.normal[0] + l, b.normal[1] + l, b.normal[2] + l);
+      physics::slide(normal, load(b.offset + l), at, velocity);
+      velocity = velocity + load(b.speed + l) * normal;
       at.x.store_unaligned(u[0] + l);
       at.y.store_unaligned(u[1] + l);
       at.z.store_unaligned(u[2] + l);

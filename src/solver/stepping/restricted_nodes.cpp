@@ -30,6 +30,24 @@ void sort_by_node(std::vector<Entry>& entries)
   std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.node < b.node; });
 }
 
+bool same(const RigidTransform& a, const RigidTransform& b)
+{
+  return a.rotation == b.rotation && a.translation == b.translation;
+}
+
+template <class Real>
+void set(SlidingBlock<Real>& block, int lane, const Point& normal, double offset, const Point& reference, double speed)
+{
+  const double n[3] = { normal.x, normal.y, normal.z }, r[3] = { reference.x, reference.y, reference.z };
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    block.normal[axis][lane] = static_cast<Real>(n[axis]);
+    block.reference[axis][lane] = static_cast<Real>(r[axis]);
+  }
+  block.offset[lane] = static_cast<Real>(offset);
+  block.speed[lane] = static_cast<Real>(speed);
+}
+
 Point rest_point(const Model& model, std::int32_t node)
 {
   const auto p = rest_position(model, node);
@@ -52,19 +70,18 @@ RestrictedNodes<Real>::RestrictedNodes(const Model& model, SlideKernel<Real> ker
   // plane: friction also follows the jolts of nodes without friction, and would dissipate several percent too much.
   const auto& surfaces = model.constraint_surfaces;
   const bool rough = std::any_of(surfaces.begin(), surfaces.end(), [](const auto& s) { return s.friction > 0; });
-  const auto plain =
-      std::stable_partition(sliding.begin(), sliding.end(),
-                            [&](const SlidingNode& node) { return rough || surfaces[node.surface].bone >= 0; });
-  for (auto node = sliding.begin(); node != plain; ++node)
+  if (!rough)
+    make_blocks(sliding);
+  for (std::size_t n = 0; rough && n < sliding.size(); ++n)
   {
-    const auto& surface = model.constraint_surfaces[node->surface];
-    gliding_.add({ node->node,
+    const SlidingNode& node = sliding[n];
+    const auto& surface = surfaces[node.surface];
+    gliding_.add({ node.node,
                    surface.bone,
                    surface.friction,
-                   rest_point(model, node->node),
-                   { &fields_[node->surface], node->distance } });
+                   rest_point(model, node.node),
+                   { &fields_[node.surface], node.distance } });
   }
-  make_blocks({ plain, sliding.end() });
   reset();
 }
 
@@ -95,7 +112,14 @@ void RestrictedNodes<Real>::make_blocks(const std::vector<SlidingNode>& nodes)
       covered = first + block_count_.back();
     }
     block_sliding_.back()[node.node - block_node_.back()] = static_cast<std::int32_t>(sliding_.size());
-    sliding_.push_back({ rest_point(model_, node.node), { &fields_[node.surface], node.distance } });
+    const std::int32_t bone = model_.constraint_surfaces[node.surface].bone;
+    const auto block = static_cast<std::int32_t>(block_node_.size()) - 1;
+    const auto same = [&](const Carrier& carrier) { return carrier.block == block && carrier.bone == bone; };
+    auto& carriers = contacts_.carriers;
+    if (bone >= 0 && std::none_of(carriers.begin(), carriers.end(), same))
+      carriers.push_back({ block, bone, {}, 0 });
+    const std::int32_t carried = bone < 0 ? -1 : carried_++;
+    sliding_.push_back({ rest_point(model_, node.node), { &fields_[node.surface], node.distance }, bone, carried });
   }
 }
 
@@ -121,6 +145,8 @@ void RestrictedNodes<Real>::list_arrays(ArrayList& list)
   list.add(Effect::sliding, "nodes that slide", sliding_);
   list.add_state(Effect::sliding, "tangent planes", contacts_.gliding);
   list.add_state(Effect::sliding, "tangent planes", contacts_.blocks);
+  list.add_state(Effect::sliding, "tangent planes", contacts_.carried);
+  list.add_state(Effect::sliding, "tangent planes", contacts_.carriers);
   list.add(Effect::sliding, "tangent planes", block_node_);
   list.add(Effect::sliding, "tangent planes", block_count_);
   list.add(Effect::sliding, "tangent planes", block_sliding_);
@@ -131,37 +157,73 @@ void RestrictedNodes<Real>::reset()
 {
   contacts_.gliding.assign(gliding_.size(), {});
   contacts_.blocks.assign(block_node_.size(), {});
+  contacts_.carried.assign(carried_, {});
+  for (Carrier& carrier : contacts_.carriers)
+    carrier = { carrier.block, carrier.bone, {}, 0 };
   for (std::size_t block = 0; block < contacts_.blocks.size(); ++block)
     for (int lane = 0; lane < Block::width; ++lane)
       contacts_.blocks[block].slip_squared[lane] =
           block_sliding_[block][lane] < 0 ? std::numeric_limits<Real>::max() : Real(-1);
 }
 
+// Moves the planes of a bone's nodes with the bone. A plane that was found for one pose holds for the others, because
+// it is stored in the frame of the bone.
 template <class Real>
-void RestrictedNodes<Real>::renew(void* self, std::int32_t block, int lane, const Real u[3], Real v[3])
+void RestrictedNodes<Real>::carry(Carrier& carrier, const Real* const u[3], const ConstraintStep& step)
 {
-  auto& nodes = *static_cast<RestrictedNodes*>(self);
-  const auto index = nodes.block_sliding_[block][lane];
+  const RigidTransform& now = step.bone[carrier.bone];
+  const std::int64_t moves = same(now, step.bone_before[carrier.bone]) ? 0 : 1;
+  if (moves + carrier.moves == 0 && same(now, carrier.pose))
+    return;
+  const physics::Pose pose = pose_of(now), before = pose_of(step.bone_before[carrier.bone]);
+  Block& b = contacts_.blocks[carrier.block];
+  for (int lane = 0; lane < Block::width; ++lane)
+  {
+    const std::int32_t index = block_sliding_[carrier.block][lane], n = block_node_[carrier.block] + lane;
+    if (index < 0 || sliding_[index].bone != carrier.bone || b.slip_squared[lane] < 0)
+      continue;
+    const Sliding& s = sliding_[index];
+    const Carried& plane = contacts_.carried[s.carried];
+    const Point normal = pose.turned(plane.normal), shift{ pose.t[0], pose.t[1], pose.t[2] };
+    const Point place = s.rest + Point{ u[0][n], u[1][n], u[2][n] };
+    const Point reference = pose.outwards(plane.found_at) - s.rest;
+    set(b, lane, normal, plane.height + dot(normal, shift - s.rest), reference,
+        dot(normal, physics::surface_velocity(pose, before, 1 / step.dt, pose.inwards(place))));
+  }
+  carrier.pose = now;
+  carrier.moves = moves;
+}
+
+template <class Real>
+void RestrictedNodes<Real>::renew(void* renewal, std::int32_t block, int lane, const Real u[3], Real v[3])
+{
+  const auto& [self, step] = *static_cast<Renewal*>(renewal);
+  const auto index = self->block_sliding_[block][lane];
   // the kernel calls this also for a node that does not slide, if its displacement is NaN
   if (index < 0)
     return;
-  const Sliding& s = nodes.sliding_[index];
-  Block& b = nodes.contacts_.blocks[block];
-  const Point moved{ u[0], u[1], u[2] };
+  const Sliding& s = self->sliding_[index];
+  Block& b = self->contacts_.blocks[block];
+  const physics::Pose pose = s.bone < 0 ? physics::Pose() : pose_of(step->bone[s.bone]);
+  const Point moved{ u[0], u[1], u[2] }, place = pose.inwards(s.rest + moved);
   physics::LevelPlane<double> plane{};
-  if (!s.level.plane_at(s.rest + moved, plane))
+  if (!s.level.plane_at(place, plane))
     return;
-  const Point velocity = physics::turned_with_normal({ b.normal[0][lane], b.normal[1][lane], b.normal[2][lane] },
-                                                     plane.normal, { v[0], v[1], v[2] });
-  const double normal[3] = { plane.normal.x, plane.normal.y, plane.normal.z };
-  const double turned[3] = { velocity.x, velocity.y, velocity.z };
-  for (int axis = 0; axis < 3; ++axis)
+  Point surface_velocity{ 0, 0, 0 };
+  if (s.bone >= 0)
   {
-    v[axis] = static_cast<Real>(turned[axis]);
-    b.normal[axis][lane] = static_cast<Real>(normal[axis]);
-    b.reference[axis][lane] = u[axis];
+    const physics::Pose before = pose_of(step->bone_before[s.bone]);
+    surface_velocity = physics::surface_velocity(pose, before, 1 / step->dt, place);
+    self->contacts_.carried[s.carried] = { plane.normal, dot(plane.normal, place) - plane.distance, place };
   }
-  b.offset[lane] = static_cast<Real>(dot(plane.normal, moved) - plane.distance);
+  const Point normal = pose.turned(plane.normal);
+  const Point velocity =
+      surface_velocity + physics::turned_with_normal({ b.normal[0][lane], b.normal[1][lane], b.normal[2][lane] },
+                                                     normal, Point{ v[0], v[1], v[2] } - surface_velocity);
+  v[0] = static_cast<Real>(velocity.x);
+  v[1] = static_cast<Real>(velocity.y);
+  v[2] = static_cast<Real>(velocity.z);
+  set(b, lane, normal, dot(normal, moved) - plane.distance, moved, dot(normal, surface_velocity));
   b.slip_squared[lane] = static_cast<Real>(plane.slip * plane.slip);
 }
 
@@ -177,14 +239,19 @@ void RestrictedNodes<Real>::constrain(const NodeShare& share, Real* const u[3], 
   };
   if (slides_)
   {
+    const std::int32_t first_block = block_of(first), end_block = block_of(last);
+    for (Carrier& carrier : contacts_.carriers)
+      if (carrier.block >= first_block && carrier.block < end_block)
+        carry(carrier, u, step);
+    Renewal renewal{ this, &step };
     kernel_({ contacts_.blocks.data(),
               block_node_.data(),
               block_count_.data(),
               { u[0], u[1], u[2] },
               { v[0], v[1], v[2] },
               renew,
-              this },
-            block_of(first), block_of(last));
+              &renewal },
+            first_block, end_block);
     gliding_.apply(first, last, u, v, step, contacts_.gliding);
   }
 

@@ -17,11 +17,27 @@ class RestrictedNodes : public NodePart<Real>
 {
 public:
   using Block = SlidingBlock<Real>;
+  /// The tangent plane normal . p = height of a node that slides on a bone, in the bone's frame.
+  struct Carried
+  {
+    physics::Vec3<double> normal;
+    double height;                   ///< [m]
+    physics::Vec3<double> found_at;  ///< the place for which the plane was found [m]
+  };
+  /// Nodes of a block that slide on the same bone.
+  struct Carrier
+  {
+    std::int32_t block, bone;
+    RigidTransform pose;  ///< at which the planes of the block are those of its carried nodes
+    std::int64_t moves;   ///< not 0: the planes have a velocity
+  };
   /// State of sliding nodes on their surfaces.
   struct Contacts
   {
-    typename GlidingNodes<Real>::States gliding;  ///< of nodes on moving surfaces; of all nodes if any has friction
-    std::vector<Block> blocks;                    ///< of the other nodes
+    typename GlidingNodes<Real>::States gliding;  ///< of all sliding nodes if any surface has friction
+    std::vector<Block> blocks;                    ///< of all of them otherwise
+    std::vector<Carried> carried;                 ///< of the nodes of `blocks` that slide on bones
+    std::vector<Carrier> carriers;
   };
 
   /// `kernel` may also read the other nodes that lie between sliding nodes of a plane, and write them back unchanged.
@@ -52,13 +68,21 @@ private:
   {
     physics::Vec3<double> rest;
     KeptLevel level;
+    std::int32_t bone;     // -1: the surface stands still
+    std::int32_t carried;  // index into Contacts::carried, or -1
+  };
+  struct Renewal
+  {
+    RestrictedNodes* nodes;
+    const ConstraintStep* step;
   };
   void make_blocks(const std::vector<SlidingNode>& nodes);
   void follow_paths(std::int32_t first, std::int32_t last, Real* const u[3], Real* const v[3],
                     const Real* const before[3], const ConstraintStep& step);
   void follow_bones(std::int32_t first, std::int32_t last, Real* const u[3], Real* const v[3],
                     const Real* const before[3], const ConstraintStep& step);
-  static void renew(void* self, std::int32_t block, int lane, const Real u[3], Real v[3]);
+  void carry(Carrier& carrier, const Real* const u[3], const ConstraintStep& step);
+  static void renew(void* renewal, std::int32_t block, int lane, const Real u[3], Real v[3]);
 
   const Model& model_;
   SlideKernel<Real> kernel_;
@@ -67,6 +91,7 @@ private:
   std::vector<PrescribedNode> prescribed_;
   GlidingNodes<Real> gliding_;
   std::vector<Sliding> sliding_;
+  std::int32_t carried_ = 0;  // number of nodes that slide on bones
   Contacts contacts_;
   std::vector<std::int32_t> block_node_, block_count_;
   std::vector<std::array<std::int32_t, Block::width>> block_sliding_;  // index into sliding_, or -1

@@ -50,14 +50,21 @@ struct RelativeMotion
   Vec3<double> surface_velocity;  ///< velocity of the bone at the node, in the scene's frame [m/s]
 };
 
+/// Velocity [m/s] of a bone at the place p [m], p in the bone's frame, from its poses at the end and start of the step;
+/// rate: 1 / dt.
+FRONTALIS_LAW Vec3<double> surface_velocity(const Pose& now, const Pose& before, double rate, const Vec3<double>& p)
+{
+  return rate * (now.outwards(p) - before.outwards(p));
+}
+
 /// now, before: pose of the bone at the end and start of the step; rate: 1 / dt; place, v: position and velocity of the
 /// node after its update.
 FRONTALIS_LAW RelativeMotion relative_to(const Pose& now, const Pose& before, double rate, const Vec3<double>& place,
                                          const Vec3<double>& v)
 {
   const Vec3<double> p = now.inwards(place);
-  const Vec3<double> surface_velocity = rate * (now.outwards(p) - before.outwards(p));
-  return { p, now.turned_back(v - surface_velocity), surface_velocity };
+  const Vec3<double> of_surface = surface_velocity(now, before, rate, p);
+  return { p, now.turned_back(v - of_surface), of_surface };
 }
 
 }  // namespace physics
