@@ -44,6 +44,7 @@ void add_effects_command(CLI::App& app);
 void add_faces_command(CLI::App& app);
 void add_fit_command(CLI::App& app);
 void add_gltf_command(CLI::App& app);
+void add_rest_command(CLI::App& app);
 void add_retarget_command(CLI::App& app);
 void add_calibrate_command(CLI::App& app);
 void add_run_command(CLI::App& app);

@@ -45,6 +45,7 @@ int main(int argc, char** argv)
   frontalis::add_faces_command(app);
   frontalis::add_dataset_command(app);
   frontalis::add_gltf_command(app);
+  frontalis::add_rest_command(app);
   frontalis::add_fit_command(app);
   frontalis::add_retarget_command(app);
   frontalis::add_calibrate_command(app);

@@ -22,6 +22,8 @@ public:
   /// activations. Returns the skin then, in the face frame. `watch` is called with the proportion that is done. Throws
   /// Unstable if the guard stops the motion, Error if the skin is not finite, and Interrupted after Ctrl-C.
   const SkinState& take(const Controls& pose, double seconds, const std::function<void(double done)>& watch);
+  /// The solver in the pose that was taken last.
+  const Solver& solver() const { return *solver_; }
   /// Of the skin that was taken last.
   const Controls& controls() const { return solver_->controls(); }
   const std::vector<float>& activation() const { return solver_->activation(); }

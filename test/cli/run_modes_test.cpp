@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 
@@ -223,6 +224,28 @@ TEST(LivingForehead, raises_its_brow_as_people_do_and_its_wrinkles_are_measured)
   EXPECT_LT(std::abs(json.at("landmarks").at("brow_mid_right").at("up_mm").get<double>()), 1);
   for (const auto& furrow : json.at("wrinkles").at("furrows"))
     EXPECT_GT(furrow.at("middle_m")[1], -10e-3);
+}
+
+TEST(LivingForehead, keeps_creases_of_raised_brows_in_its_shell)
+{
+  const TemporaryFolder folder;
+  const std::string smooth = folder / "smooth.vtkhdf", creased = folder / "creased.vtkhdf";
+  ASSERT_EQ(run_program({ "bake", FRONTALIS_SOURCE_DIRECTORY "/config/living_forehead.yaml", "--voxel", "3", "--output",
+                          smooth })
+                .code,
+            0);
+  const ProgramResult result = run_program({ "rest", smooth, "--creases", "raise_brows", "--set", "0.5", "--seconds",
+                                             "0.05", "--backend", "cpu", "--output", creased });
+  ASSERT_EQ(result.code, 0) << result.errors;
+  expect_contains(result.output, "creases  0.5 of the folds of raise_brows stay");
+  const Model before = read_model(smooth), after = read_model(creased);
+  double largest = 0;
+  for (std::size_t v = 0; v < before.shells.at(0).surface.vertices.size(); ++v)
+    largest = std::max(largest,
+                       std::abs(after.shells.at(0).surface.vertices[v][2] - before.shells[0].surface.vertices[v][2]));
+  EXPECT_GT(largest, 0.1e-3);
+  EXPECT_EQ(after.skin.vertices, before.skin.vertices);
+  EXPECT_EQ(run_program({ "rest", smooth, "--creases", "no_such", "--set", "1", "-o", creased }).code, 1);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
-// The opening of a slit of zero width in a block that is pulled.
+// The opening of a slit of zero width in a block that is pulled, and in skin under tension.
 
+#include "frontalis/runner/named_controls.hpp"
 #include "frontalis/solver/solver.hpp"
 
 #include "bake/scene_pieces.hpp"
@@ -139,6 +140,74 @@ TEST(Slit, JointsAreOneNodeOnEachBackend)
   for (const Model::Joint& joint : model.joints)
     for (std::size_t a = 0; a < 3; ++a)
       EXPECT_NEAR(u[static_cast<std::size_t>(joint.node)][a], u[static_cast<std::size_t>(joint.master)][a], 1e-12);
+}
+
+// Skin of 2 mm under tension, on 4 mm of soft tissue that is held below. The edge of a cut draws back by
+// N / sqrt(K k), the displacement of a sheet of stiffness K on a layer of the shear stiffness k per area.
+TEST(Slit, TensionOpensItAsASheetOnALayerWould)
+{
+  constexpr double length = 160e-3, width = 4e-3, skin = 2e-3, below = 4e-3, young = 100e3, soft = 2.6e3, ratio = 0.3;
+  constexpr double stress = 2e3;
+  const std::string file = std::filesystem::temp_directory_path() / ("cut" + std::to_string(getpid()) + ".obj");
+  TriangleMesh cut;
+  for (const double y : { -1e-3, 5e-3 })
+    for (const double z : { 0.5 * below, 8e-3 })  // deeper than the skin, whose lower nodes would stay joined
+      cut.vertices.push_back({ 0.5 * length, y, z });
+  cut.triangles = { { 0, 2, 1 }, { 1, 2, 3 } };
+  write_obj(cut, file, [](const auto&) { return true; });
+  Scene scene = plain_scene(2e-3);
+  scene.accuracy.assumed_strain = true;
+  const double middle = 0.5 * length, y = 0.5 * width, height = skin + below;
+  scene.surfaces = { box_surface("block", { middle, y, 0.5 * height }, { length, width, height }),
+                     box_surface("upper", { middle, y, below + skin }, { 2 * length, 2 * width, 2 * skin }),
+                     box_surface("floor", { middle, y, -1e-3 }, { 2 * length, 60e-3, 2e-3 }),
+                     box_surface("left", { -1e-3, y, 0 }, { 2e-3, 60e-3, 60e-3 }),
+                     box_surface("right", { length + 1e-3, y, 0 }, { 2e-3, 60e-3, 60e-3 }),
+                     file_surface("cut", file) };
+  for (const auto& [name, modulus] : { std::pair{ "skin", young }, std::pair{ "soft", soft } })
+  {
+    scene.materials.push_back(material(name, modulus));
+    scene.materials.back().parameters["poisson"] = ratio;
+  }
+  scene.volumes = { volume_inside("tissue", { "block" }, "soft", true),
+                    volume_inside("skin", { "upper" }, "skin", false, 1) };
+  scene.constraints = { held("floor", ""), held("left", ""), held("right", "") };
+  for (SceneConstraint& constraint : scene.constraints)
+    constraint.within = 0.2e-3;
+  SceneMuscle tension;
+  tension.name = tension.volume = "skin";
+  tension.fibre = { 1, 0, 0 };
+  tension.stress_reference = stress;
+  tension.tension_length = false;
+  tension.tone = 1;
+  scene.muscles = { tension };
+  scene.skin.surface = "block";
+  for (const double x : { middle - 0.01e-3, middle + 0.01e-3 })
+    scene.landmarks.push_back({ x < middle ? "left" : "right", { x, y, height } });
+
+  const double stretching = young * skin, shear = soft / (2 * (1 + ratio)) / below;
+  const double end = std::tanh(middle * std::sqrt(shear / stretching));  // the far ends are held
+  const double expected = 2 * stress * skin / std::sqrt(stretching * shear) * end;
+  for (const bool cuts : { false, true })
+  {
+    scene.volumes[0].slits = cuts ? std::vector<std::string>{ "cut" } : std::vector<std::string>{};
+    const Model model = bake(scene);
+    const auto solver = make_solver(std::make_shared<const Model>(model), { "cpu", 0, 0 });
+    EXPECT_TRUE(solver->settle(rest_controls(model), 1e-3, 5).reached);
+    SkinState skin_now;
+    solver->skin(skin_now);
+    double gape = 0, away = 0;
+    for (std::size_t a = 0; a < 3; ++a)
+      gape += std::pow(double(skin_now.landmarks[1][a] - skin_now.landmarks[0][a]), 2);
+    gape = std::sqrt(gape);
+    for (std::size_t v = 0; v < model.skin.vertices.size(); ++v)
+      for (std::size_t a = 0; a < 3; ++a)
+        away = std::max(away, std::abs(double(skin_now.vertices[v][a]) - model.skin.vertices[v][a]));
+    if (cuts)
+      EXPECT_NEAR(gape, expected, 0.15 * expected);
+    else
+      EXPECT_LT(away, 0.1e-3);
+  }
 }
 
 }  // namespace

@@ -51,6 +51,9 @@ TEST(Usage, wrong_options_end_with_2_and_one_message)
     { "run", scene, "--activate", "=0.1" },
     { "run", scene, "--vtp" },
     { "fit", scene },
+    { "rest", scene, "-o", "rest.vtkhdf" },
+    { "rest", scene, "-o", "rest.vtkhdf", "--creases", "smile" },
+    { "rest", scene, "-o", "rest.vtkhdf", "--neutral", "--set", "0.5" },
     { "retarget", scene, "-o", "found.csv" },
     { "verify", "--only", "no_such_case" },
   };

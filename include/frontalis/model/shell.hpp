@@ -14,7 +14,7 @@ struct Shell
   std::string name;           ///< of the layer in the scene
   double thickness = 0;       ///< [m]
   std::int32_t material = 0;  ///< index into Model::materials, of which only the stiffness at rest counts
-  TriangleMesh surface;       ///< the middle of the layer at rest, local; edges are about as long as a voxel's
+  TriangleMesh surface;       ///< middle of the layer free of moments, local: at rest, or creased (rest_shape.hpp)
   Binding binding;            ///< of its vertices
 };
 

@@ -55,6 +55,29 @@ Matrix inverse(const Matrix& a)
   return b;
 }
 
+// Part of a voxel's edge by which a vertex may lie beside the place where the voxel carries it: single precision of the
+// coordinates in the voxel.
+constexpr double rounding = 1e-5;
+
+// Where voxels carry the vertices of a shell at rest. Those that its shape has within rounding errors are its own.
+std::vector<Vector> carried_vertices(const Model& model, const Shell& shell)
+{
+  std::vector<Vector> places;
+  places.reserve(shell.surface.vertices.size());
+  for (std::size_t v = 0; v < shell.surface.vertices.size(); ++v)
+  {
+    const auto& at = shell.binding.coordinates[v];
+    double weight[8];
+    physics::trilinear_weights<double>(at[0], at[1], at[2], weight);
+    Vector carried{ 0, 0, 0 };
+    for (std::size_t b = 0; b < 8; ++b)
+      carried = carried + weight[b] * vector(rest_position(model, model.voxel_nodes[shell.binding.voxel[v]][b]));
+    const Vector own = vector(shell.surface.vertices[v]);
+    places.push_back(norm(own - carried) < rounding * model.spacing[0] ? own : carried);
+  }
+  return places;
+}
+
 }  // namespace
 
 ShellMesh::Triangle shell_triangle(const std::array<Vector, 6>& x, const std::array<bool, 3>& beyond, double thickness,
@@ -170,9 +193,10 @@ void ShellMesh::add(const Model& model, const Shell& shell)
   const Material& material = model.materials[shell.material];
   const double mu = shear_at_rest(material), young = physics::young_modulus(mu, material.parameters[1]);
   const double poisson = young / (2 * mu) - 1;
+  const std::vector<Vector> carried = carried_vertices(model, shell);
   for (const auto& t : shell.surface.triangles)
   {
-    std::array<Vector, 6> x{};
+    std::array<Vector, 6> x{}, creased{};
     std::array<bool, 3> beyond{};
     std::array<std::int32_t, 6> vertex{};
     for (std::size_t i = 0; i < 3; ++i)
@@ -180,12 +204,17 @@ void ShellMesh::add(const Model& model, const Shell& shell)
       const auto across = opposite.find({ t[(i + 2) % 3], t[(i + 1) % 3] });
       beyond[i] = across != opposite.end();
       const std::int32_t outer = beyond[i] ? across->second : t[0];
-      x[i] = frontalis::vector(shell.surface.vertices[t[i]]);
-      x[i + 3] = frontalis::vector(shell.surface.vertices[outer]);
+      x[i] = carried[t[i]];
+      x[i + 3] = carried[outer];
+      creased[i] = frontalis::vector(shell.surface.vertices[t[i]]);
+      creased[i + 3] = frontalis::vector(shell.surface.vertices[outer]);
       vertex[i] = first + t[i];
       vertex[i + 3] = first + outer;
     }
     triangles.push_back(shell_triangle(x, beyond, shell.thickness, young, poisson));
+    // bending is measured from the creased shape, stretching from where the voxels carry the shell
+    const Triangle free_of_moment = shell_triangle(creased, beyond, shell.thickness, young, poisson);
+    std::copy_n(free_of_moment.rest.height, 3, triangles.back().rest.height);
     triangles.back().vertex = vertex;
   }
 }

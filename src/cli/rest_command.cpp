@@ -1,0 +1,122 @@
+#include "cli/command_options.hpp"
+#include "cli/model_source.hpp"
+#include "cli/posed_face.hpp"
+#include "cli/progress.hpp"
+
+#include "frontalis/error.hpp"
+#include "frontalis/model/model_file.hpp"
+#include "frontalis/runner/named_controls.hpp"
+#include "frontalis/solver/rest_shape.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace frontalis
+{
+namespace
+{
+
+using Vectors = std::vector<std::array<double, 3>>;
+
+struct RestOptions
+{
+  ModelSource source;
+  std::string file;
+  std::vector<std::string> creases;
+  double set = 0;
+  bool neutral = false;
+  double seconds = 0.6;
+  SolverSettings solver;
+};
+
+// The displacements at rest, with everything in equilibrium that acts there, such as the tone of muscles and gravity.
+Vectors resting(const std::shared_ptr<const Model>& model, const RestOptions& options)
+{
+  const auto solver = make_solver(model, options.solver);
+  Progress progress;
+  const Equilibrium found = solver->settle(rest_controls(*model), 1e-3, options.seconds * 10,
+                                           [&](const Equilibrium& now)
+                                           {
+                                             progress.update("relaxing", now.seconds / (10 * options.seconds));
+                                             return !interrupt_requested();
+                                           });
+  if (interrupt_requested())
+    throw Interrupted();
+  if (!found.reached)
+    throw Error(fmt::format("{}: the face at rest is not in equilibrium after {:g} s; give more --seconds",
+                            options.source.path, 10 * options.seconds));
+  Vectors displacements;
+  solver->displacements(displacements);
+  return displacements;
+}
+
+// the displacements in a pose
+Vectors posed(PosedFace& face, const Model& model, const std::string& pose, double seconds)
+{
+  Progress progress;
+  try
+  {
+    face.take(expression_controls(model, pose), seconds, [&](double done) { progress.update(pose, done); });
+  }
+  catch (const Unstable& error)
+  {
+    throw Error(pose + ": " + error.what());
+  }
+  Vectors displacements;
+  face.solver().displacements(displacements);
+  return displacements;
+}
+
+void change_rest(const RestOptions& options)
+{
+  if (options.creases.empty() == (options.set > 0))
+    throw WrongUsage("--creases goes with --set, the part of the folds that stays");
+  if (options.creases.empty() && !options.neutral)
+    throw WrongUsage("nothing to change: give --creases, --neutral or both");
+  const auto before = std::make_shared<const Model>(obtain_model(options.source));
+  Model model = *before;
+  if (!options.creases.empty() && model.shells.empty())
+    throw Error(options.source.path + ": no layer is a shell ('shell: true'); creases stay in shells alone");
+  if (options.neutral)
+  {
+    const Vectors rest = resting(before, options);
+    place_skin_at(model, rest);
+    double largest = 0;
+    for (const auto& u : rest)
+      largest = std::max(largest, std::hypot(u[0], u[1], u[2]));
+    fmt::print("neutral  the tissue moves by at most {:.3f} mm to its equilibrium\n", 1e3 * largest);
+  }
+  if (!options.creases.empty())
+  {
+    PosedFace face(before, options.solver);
+    for (const std::string& pose : options.creases)
+      add_creases(model, posed(face, *before, pose, options.seconds), options.set);
+    fmt::print("creases  {:g} of the folds of {} stay\n", options.set, fmt::join(options.creases, ", "));
+  }
+  write_model(model, options.file);
+  fmt::print("written  {}\n", options.file);
+}
+
+}  // namespace
+
+void add_rest_command(CLI::App& app)
+{
+  const auto options = std::make_shared<RestOptions>();
+  CLI::App* command =
+      app.add_subcommand("rest", "change a model at rest: creases that stay, a neutral face that is in equilibrium");
+  command->add_option("SCENE_OR_MODEL", options->source.path, "scene (YAML) or baked model (.vtkhdf)")->required();
+  command->add_option("-o,--output", options->file, "model file to write (.vtkhdf)")->required();
+  command->add_option("--creases", options->creases, "expressions whose folds stay in shells: NAME,NAME,...")
+      ->delimiter(',');
+  command->add_option("--set", options->set, "part of the folds' angles that stays, 0 to 1")->check(CLI::Range(0., 1.));
+  command->add_flag("--neutral", options->neutral,
+                    "place the skin so that it is where the scene has it once the tissue is in equilibrium");
+  add_positive(*command, "--seconds", options->seconds, "simulated seconds from rest to an expression (0.6)");
+  add_solver_options(*command, options->solver);
+  add_scene_options(*command, options->source);
+  command->callback([options] { change_rest(*options); });
+}
+
+}  // namespace frontalis
