@@ -11,7 +11,7 @@
 #define FRONTALIS_LAW inline
 #endif
 
-// Unrolls the next loop, so that arrays indexed by it stay in registers, if the compiler does not do so by itself.
+// Unrolls the loop that follows, so that arrays indexed by it stay in registers.
 #if defined(__CUDACC__)
 #define FRONTALIS_UNROLL _Pragma("unroll")
 #else

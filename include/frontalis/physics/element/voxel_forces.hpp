@@ -19,7 +19,7 @@ FRONTALIS_LAW void gauss_forces(const Voxel& voxel, T (&mode)[3][8], bool with_b
   for (auto& component : force)
     for (T& f : component)
       f = Number<T>::of(0);
-  // unrolled, so that the weights are constants
+  // The loop is unrolled so that the weights are constants.
   FRONTALIS_UNROLL
   for (int point = 0; point < 8; ++point)
   {

@@ -37,7 +37,6 @@ FRONTALIS_LAW T shear_modulus(const Ogden<T>& material)
   return Number<T>::of(0.5) * (material.mu1 * material.alpha1 + material.mu2 * material.alpha2);
 }
 
-/// The two terms as arrays, for loops.
 template <class T>
 struct OgdenTerms
 {
