@@ -54,8 +54,8 @@ struct AttachedNode
 {
   std::int32_t node = 0;
   std::int32_t master = 0;  ///< a free node; several attached nodes may have the same master
-  double ratio =
-      0;  ///< distance from the surface at rest, the node's over its master's, -1..1; negative beyond the surface
+  /// distance from the surface at rest, the node's over its master's, -1..1; negative beyond the surface
+  double ratio = 0;
   std::int32_t bone = -1;        ///< of a held node: index into Model::bones; -1: the node stands still
   std::int32_t surface = -1;     ///< of a sliding node: index into Model::constraint_surfaces; -1: the node is held
   std::int32_t constraint = -1;  ///< constraint that attaches it, in Model::constraints; -1: unknown

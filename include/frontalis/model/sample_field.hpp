@@ -11,8 +11,8 @@ namespace frontalis
 struct SurfaceDistance
 {
   SurfaceDistance(double signed_distance, double past = 0) : value(signed_distance), past_rim(past) {}
-  double
-      value;  ///< signed distance; past the rim of an open surface, signed distance from the tangent plane at the rim
+  /// signed distance; past the rim of an open surface, signed distance from the tangent plane at the rim
+  double value;
   double past_rim;  ///< how far the point is past the rim of an open surface; 0 beside or above the surface
 };
 /// The distance of a point in local coordinates.

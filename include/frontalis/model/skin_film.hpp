@@ -18,8 +18,8 @@ struct SkinFilm
   double modulus = 0;       ///< of the film, E / (1 - nu^2) [Pa]
   double poisson = 0;       ///< of the film
   double base_modulus = 0;  ///< of the tissue below it, E / (1 - nu^2) [Pa]
-  double stretch =
-      0;  ///< strain of the film in the skin at rest, equal in all directions; it delays the onset of lines
+  /// strain of the film in the skin at rest, equal in all directions; it delays the onset of lines
+  double stretch = 0;
   std::vector<std::array<std::int32_t, 3>> carried;  ///< triangles of the vertices that follow the voxels
   std::vector<std::array<std::int32_t, 2>> parents;  ///< of each later vertex: the two vertices between which it lies
 };

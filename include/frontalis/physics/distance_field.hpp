@@ -27,8 +27,8 @@ struct DistanceField
   double spacing = 1;                    ///< distance between neighbouring samples [m]
   double radius = 0;                     ///< radius of the sphere [m]; 0: the field is sampled
   std::int32_t bricks[3] = { 0, 0, 0 };  ///< number of bricks in the table along x, y, z
-  const std::int32_t* table =
-      nullptr;                     ///< index of each brick's samples, x fastest; negative: the brick has no samples
+  /// index of each brick's samples, x fastest; negative: the brick has no samples
+  const std::int32_t* table = nullptr;
   const float* samples = nullptr;  ///< brick_size per brick, x fastest; the first belongs to cell (-1,-1,-1) [m]
 
   /// The first of the 3 x 3 x 3 samples around a cell; null if none are stored.

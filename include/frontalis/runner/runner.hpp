@@ -29,8 +29,8 @@ struct Frame
   std::vector<std::array<double, 3>> displacements;
   std::vector<BodyFrame> bodies;  ///< bodies that tissue touches, one per entry of touched_bodies(model)
   std::vector<BodyFrame> bones;   ///< one per bone
-  bool has_bone_forces =
-      false;  ///< whether RunnerSettings::wants_bone_forces was true; otherwise reactions of bones are 0
+  /// whether RunnerSettings::wants_bone_forces was true; otherwise reactions of bones are 0
+  bool has_bone_forces = false;
   std::vector<float> activation;  ///< present activation of each muscle, 0..1
   Monitor monitor;                ///< energies and volume ratios, renewed about once per second of wall time
   double seconds_per_step = 0;    ///< wall time per step since the latest renewal of the monitor; 0: not known

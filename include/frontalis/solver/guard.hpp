@@ -33,8 +33,8 @@ struct GuardSettings
   double slower = 0.5;  ///< factor on the time step after a finding, applied once per try
   int recovery = 4;     ///< number of checks without a finding before the full time step is used again
   int tries = 3;        ///< failed tries in a row after which the motion is stopped
-  double inverted_share =
-      0.05;  ///< fraction of voxels that may be inverted (J <= 0); more are allowed if the last good check had more
+  /// fraction of voxels that may be inverted (J <= 0); more are allowed if the last good check had more
+  double inverted_share = 0.05;
   bool ledger = false;  ///< judge energy by the imbalance of the ledger; needs SolverSettings::ledger
 };
 
@@ -79,8 +79,8 @@ public:
 /// good check. At a time t later the energy may be at most twice (sqrt(E + W) + t sqrt(sum of f^2 / (2 m)))^2. Here f
 /// is gravity and surface loads on a node of mass m, and W is the sum of
 /// - the energy of a strain of 1e-4 everywhere;
-/// - the work that fibres can do: tension times volume, times a stretch of 1.2, or of 1.5 if they also have a passive
-/// part;
+/// - the work that fibres can do: active tension times volume times 1.2, the range of stretch in which they pull, plus
+/// 0.3 times tension times volume if they have a passive part;
 /// - four times the bound of the stiffness of the voxels at bones and prescribed nodes times d^2, where d is the length
 /// of the paths of these bones and nodes in the time t;
 /// - the energy that viscous stresses can give back.

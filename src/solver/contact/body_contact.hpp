@@ -132,8 +132,8 @@ private:
   const Model& model_;
   bool runs_ = true, any_pushed_ = false;
   std::vector<Point> points_;  // sorted by voxel
-  std::vector<std::int32_t>
-      plane_points_;  // first point in each plane of voxels; the last two entries are the number of points
+  // first point in each plane of voxels; the last two entries are the number of points
+  std::vector<std::int32_t> plane_points_;
   BoundNodeWay nodes_;
   std::vector<physics::DistanceField> fields_;
   // Values of the present step:

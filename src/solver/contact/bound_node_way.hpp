@@ -31,8 +31,8 @@ private:
   };
   double spread_ = 1;
   std::vector<Run> runs_;  // runs that contain all bound nodes, ascending
-  std::vector<std::int32_t>
-      plane_runs_;  // first run in each plane of nodes; the last two entries are the number of runs
+  // first run in each plane of nodes; the last two entries are the number of runs
+  std::vector<std::int32_t> plane_runs_;
 };
 
 }  // namespace frontalis

@@ -129,12 +129,12 @@ private:
   double reach_;                  // distance from a triangle within which a vertex forms a pair with it [m]
   std::vector<float> stiffness_;  // of each vertex [N/m]
   std::vector<float> per_area_;   // stiffness_ divided by the area of each vertex [N/m3]
-  std::vector<float>
-      overlap_;  // gap of each vertex at rest, not positive; the depth of contact is measured from it [m]
+  // gap of each vertex at rest, not positive; the depth of contact is measured from it [m]
+  std::vector<float> overlap_;
   std::vector<VertexBlock<Real>> vertex_blocks_;
   std::vector<std::int32_t> bound_nodes_;  // ascending
-  std::vector<std::int32_t>
-      plane_points_;  // first vertex in each plane of voxels; the last two entries are the number of vertices
+  // first vertex in each plane of voxels; the last two entries are the number of vertices
+  std::vector<std::int32_t> plane_points_;
   BoundNodeWay nodes_;
   // Values of the present step:
   std::vector<PairForceBlock<Real>> forces_;
