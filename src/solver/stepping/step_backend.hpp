@@ -73,7 +73,7 @@ public:
   virtual void save(std::unique_ptr<BackendState>& to) = 0;
   virtual void restore(const BackendState& from) = 0;
 
-  /// Internal forces [N] at `displacements`; null: at the present ones.
+  /// Internal forces [N] at `displacements`; null stands for the present displacements.
   virtual void internal_forces(const NodalVectors* displacements, NodalVectors& out) = 0;
   /// Largest eigenvalue [1/s2] of M^-1/2 K M^-1/2 at the present displacements with held nodes fixed. Returns nothing
   /// if the backend cannot search for it faster than internal_forces() allows.
