@@ -107,8 +107,8 @@ std::string VariantBench::key_of(const AccuracySetting& setting, const Backend& 
          content_hash(fmt::format("{} {:.6f} {:.6f}", text, plan_.history.ramp, plan_.history.hold));
 }
 
-// The backend of a stored motion. For single precision, motions of other backends are accepted too, so that a folder
-// may come from a faster machine, such as one with a GPU, which always computes in single precision.
+// The backend of a stored motion. For single precision, motions of other backends are accepted too, so that a faster
+// machine may have filled the folder, for instance one with a GPU, which always computes in single precision.
 std::optional<Backend> VariantBench::kept_backend(const AccuracySetting& setting) const
 {
   std::vector<Backend> backends{ setting.backend };

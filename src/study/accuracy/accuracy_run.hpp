@@ -88,7 +88,7 @@ public:
   /// motions must have the rest positions of the reference.
   SkinAverage(const VariantMotion& reference, double deviation);
 
-  /// The motion with averaged displacements; landmarks stay as they are.
+  /// The motion with averaged displacements; landmarks are not averaged.
   VariantMotion of(const VariantMotion& motion) const;
   /// Error against the averaged reference in the worst phase. Throws Error if skin_errors() does.
   SkinError error(const VariantMotion& motion) const;
