@@ -26,7 +26,6 @@ inline void require(cudaError_t status, const char* what)
   throw Error(text);
 }
 
-/// An array in device memory.
 template <class T>
 class DeviceArray
 {

@@ -35,7 +35,7 @@ private:
   bool fits_indices_ = true;
 };
 
-/// Layers that are shells, in device memory.
+/// Shells of a model in device memory.
 class DeviceShell : public DevicePart
 {
 public:

@@ -85,7 +85,7 @@ __device__ __forceinline__ physics::Vec3<double> from_bone(const StepArguments& 
            body.middle[2] + double(point.arm[2]) + double(moved.z) - origin[2] };
 }
 
-/// A point in a step.
+/// A point of contact in one step.
 struct PointStep
 {
   std::uint32_t index;

@@ -24,7 +24,7 @@ struct KeptSamples
   float4* words;
   std::uint32_t count, index;  ///< number of all copies, and index of this one
 
-  /// The n-th of the copy's 28 numbers.
+  /// The n-th of the 28 numbers in the copy.
   __device__ __forceinline__ float& number(int n) const
   {
     return reinterpret_cast<float*>(words + n / 4 * count + index)[n % 4];

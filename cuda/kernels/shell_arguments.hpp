@@ -32,7 +32,7 @@ struct ShellTriangles
   bool spring;  ///< whether the forces are those of ShellStiffness::add_forces()
 };
 
-/// Layers that are shells, in patches.
+/// Shells in patches. Pointers are to device memory.
 struct ShellArguments
 {
   const PatchShell* patches;  ///< null: shells are not computed

@@ -36,7 +36,6 @@ struct SlidingFetch
 
 __device__ __forceinline__ physics::Vec3<float> normal_of(const float4& plane) { return { plane.x, plane.y, plane.z }; }
 
-/// Whether a sliding node has friction.
 __device__ __forceinline__ bool rubs(const StepArguments& g, std::int32_t index)
 {
   return static_cast<std::uint32_t>(index) < g.rubbing_count;

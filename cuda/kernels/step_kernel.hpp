@@ -241,7 +241,6 @@ inline constexpr Effects of_nodes = Effects::sliding | Effects::tasks | Effects:
 /// The effects of nodes in a set, and the effects of voxels in it that a voxel without fibres and viscosity may have.
 template <Effects Set>
 inline constexpr Effects plain_part = Set&(Effects::general_element | of_nodes | Effects::contact | Effects::shell);
-/// Effects of voxels in a set.
 constexpr Effects voxel_part(Effects set)
 {
   return set & (Effects::fibres | Effects::viscosity | Effects::general_element);

@@ -34,7 +34,7 @@ struct FibreVoxels
   double* work;    ///< work of the fibres of each voxel [J]
 };
 
-/// Work done on nodes in a step.
+/// Memory for the work that is done on nodes in a step.
 struct NodeAccount
 {
   std::uint32_t nodes;

@@ -62,7 +62,6 @@ private:
   std::mt19937_64 engine_;
 };
 
-/// The random choices for one frame.
 struct RandomFrame
 {
   std::map<std::string, double> units;

@@ -42,7 +42,6 @@ std::array<double, 3> motion_of(const RunSummary& summary, std::size_t landmark)
   return motion;
 }
 
-// Energies by name [J].
 std::vector<std::pair<std::string, double>> energies_of(const EnergyLedger& ledger)
 {
   std::vector<std::pair<std::string, double>> energies{ { "initial", ledger.initial } };

@@ -11,7 +11,6 @@
 namespace frontalis
 {
 
-/// The result of a run.
 struct RunSummary
 {
   std::string backend;

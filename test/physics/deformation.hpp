@@ -82,7 +82,6 @@ inline Matrix random_gradient(std::mt19937& random, int trial)
   return F;
 }
 
-/// A rotation from a random unit quaternion.
 inline Matrix random_rotation(std::mt19937& random)
 {
   std::normal_distribution<double> normal;

@@ -26,7 +26,6 @@ void for_random_motions(const std::function<void(const Matrix& F, const Matrix& 
   }
 }
 
-// Stress of a muscle's fibre along `a`.
 Matrix fibre_stress_at(const Matrix& F, const Vec3<double>& a, double with_length)
 {
   const Vec3<double> along = F * a;

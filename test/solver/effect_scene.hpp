@@ -30,7 +30,6 @@ enum SceneEffect : unsigned
   everything = 511
 };
 
-/// Every valid combination of effects.
 inline std::vector<unsigned> every_combination()
 {
   std::vector<unsigned> combinations;

@@ -187,7 +187,6 @@ TEST_P(Gliding, TheLedgerClosesOverSlipAndFriction)
   for (const double friction : { 0.0, 0.4 })
   {
     Model model = shell(centre, friction);
-    // Some nodes follow another bone.
     for (std::int32_t n = 0; n < 20; ++n)
       model.rigid.push_back({ n, 0 });
     SolverSettings settings{ GetParam(), 0, 0 };

@@ -94,7 +94,6 @@ TEST_P(BodiesTouch, a_pushed_body_comes_to_rest_where_its_forces_balance)
   for (const std::size_t axis : { 0, 2 })
     EXPECT_NEAR(solver->reactions()[0].force[axis], 40 * offset(*solver)[axis], 1e-4) << axis;
   EXPECT_GT(offset(*solver)[2], 0.1e-3);
-  // The finger rotates with its bone.
   EXPECT_EQ(solver->bodies()[0].rotation, controls.bone[1].rotation);
 }
 

@@ -26,7 +26,6 @@ Model block_with_skin()
   return model;
 }
 
-// Displacements of a stretch along z.
 std::vector<std::array<double, 3>> stretched(const Model& model, double stretch)
 {
   std::vector<std::array<double, 3>> u;

@@ -31,7 +31,6 @@ Matrix product(const Matrix& a, const Matrix& b)
   return c;
 }
 
-// Rotation by a random unit quaternion.
 Matrix random_rotation(std::mt19937& random)
 {
   std::normal_distribution<double> normal;

@@ -85,7 +85,7 @@ TEST(EffectCosts, AreTheDifferenceToTheModelWithoutTheEffect)
   EXPECT_DOUBLE_EQ(all.costs.plain_step, price_of(Effect::elasticity));
   for (const EffectCost& cost : all.costs.effects)
   {
-    // Friction requires sliding.
+    // A model without sliding has no friction either, so that the cost of sliding includes that of friction.
     const double price = !cost.presence.present || cost.effect == Effect::output_fields ? 0
                          : cost.effect == Effect::sliding ? price_of(Effect::sliding) + price_of(Effect::friction)
                                                           : price_of(cost.effect);

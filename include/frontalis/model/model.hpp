@@ -71,7 +71,6 @@ struct Model : ModelPresets
   };
   std::vector<Joint> joints;
 
-  // constraints
   std::vector<std::string> bones;
   std::vector<std::string> constraints;  ///< names, in the scene's order
   std::vector<ConstraintSurface> constraint_surfaces;
@@ -82,24 +81,20 @@ struct Model : ModelPresets
   std::vector<SelfContact> self_contacts;
   std::vector<Shell> shells;
 
-  // loads
   std::array<double, 3> gravity{ { 0, 0, 0 } };  ///< local axes [m/s2]
   std::vector<Load> loads;
   std::vector<PrescribedNode> prescribed;
 
-  // published skin and landmarks
   TriangleMesh skin;
   Binding skin_binding;
   std::vector<std::string> landmarks;
   std::vector<std::array<double, 3>> landmark_positions;  ///< at rest, local [m]
   Binding landmark_binding;
 
-  // frames
   RigidTransform to_scene;
   RigidTransform to_face;
   std::string face_frame = "face";
 
-  // time
   double damping = 0;       ///< mass-proportional damping coefficient [1/s]
   double time_scaling = 1;  ///< how many seconds of activations and frames pass per second of the solver's time
   double frame_rate = 30;   ///< [1/s] of wall time

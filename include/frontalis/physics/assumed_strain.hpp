@@ -65,9 +65,9 @@ FRONTALIS_LAW AxisBending<T> axis_bending(const AssumedStrain<T>& k, const S* we
   return { own, n * own };
 }
 
-/// Forces conjugate to the pulled-back modes r[pair][axis]; force[pair][axis] has the same order. weight[i] is 1 / (4
-/// sqrt(3) h_i), because the volume integrals of products of mode derivatives are then products of two weights, for
-/// modes of amplitude 8.
+/// Forces conjugate to the pulled-back modes r[pair][axis]; force[pair][axis] has the same order. With weight[i] = 1 /
+/// (4 sqrt(3) h_i), the volume integrals of products of mode derivatives are products of two weights, for modes of
+/// amplitude 8.
 template <class T, class S>
 FRONTALIS_LAW void hourglass_forces(const AssumedStrain<T>& k, const S* weight, const T (&r)[4][3], T (&force)[4][3])
 {

@@ -11,12 +11,12 @@ namespace physics
 {
 
 /// Contact acts as a stiffness: a point at depth g inside a body is pushed out by the pressure
-/// p = contact_stiffness E g / h,
+///   p = contact_stiffness E g / h,
 /// where E is Young's modulus of the mixture in the point's voxel and h the shortest voxel edge. A pressure of 5 % of E
 /// thus pushes the point in by 1.4 % of a voxel, for every Poisson's ratio. (With a multiple of the longitudinal
 /// modulus in place of E, the depth would be 13 times as large at a ratio of 0.3 as at 0.49.) Where nodes of nearly
-/// incompressible tissue touch a body, the highest squared frequency of the model grows by 3.5 %, so that steps are 1.7
-/// % shorter.
+/// incompressible tissue touch a body, the highest squared frequency of the model grows by 3.5 %, so that steps are
+/// 1.7 % shorter.
 constexpr double contact_stiffness = 3.5;
 
 /// Stiffness along the surface of a point that sticks, divided by the stiffness along the normal.

@@ -38,11 +38,11 @@ FRONTALIS_LAW T passive_tension(T l)
   return curve + N::of(fibre_p1 * fibre_p2) * e * N::max(l - N::of(end), N::of(0));
 }
 
-/// Second Piola-Kirchhoff stress along the fibre [Pa], S = result a0 (x) a0, of a fibre with Cauchy stress
-/// stress_reference (passive + activation active) l, that is S = J sigma / stretch^2. It fades out below a small J, so
-/// that fibres do not keep a crushed element crushed. with_length: 1 applies the tension-length relation, 0 gives the
-/// constant S = activation stress_reference. with_passive: 1 adds the passive part. Passive = false omits it at compile
-/// time.
+/// Second Piola-Kirchhoff stress S along a fibre [Pa]; its tensor is S a0 (x) a0. The Cauchy stress along the fibre is
+/// sigma = stress_reference (passive + activation active) l, with the passive and active tension at the normalised
+/// length l, and S = J sigma / stretch^2. The stress fades out below a small J, so that fibres do not keep a crushed
+/// element crushed. with_length: 1 applies the tension-length relation, 0 gives the constant S = activation
+/// stress_reference. with_passive: 1 adds the passive part. Passive = false omits that part at compile time.
 template <class T, bool Passive = true>
 FRONTALIS_LAW T fibre_stress(T stretch_squared, T J, T stress_reference, T activation, T with_length, T with_passive)
 {

@@ -71,7 +71,6 @@ struct Matrix3
   T a[3][3];
 };
 
-/// 3-vector.
 template <class T>
 struct Vec3
 {

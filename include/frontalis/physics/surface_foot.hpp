@@ -27,9 +27,8 @@ struct SurfaceFoot
                 ///< corner
   T inside[3];  ///< barycentric coordinates of the nearest point in the triangle
   T spread[3];  ///< factors of (normal - gradient) in the gap's derivatives with respect to the corners' normals [m]
-  Vec3<T> mean_normal;  ///< corner normals interpolated at the nearest point in the triangle; not of length 1
-  Vec3<T> mean_place;   ///< the nearest point in the triangle
-  // the triangle's plane
+  Vec3<T> mean_normal;   ///< corner normals interpolated at the nearest point in the triangle; not of length 1
+  Vec3<T> mean_place;    ///< the nearest point in the triangle
   Vec3<T> facet_normal;  ///< unit normal of the triangle's plane
   T height;              ///< height of the point above the plane [m]
   T below[3];            ///< barycentric coordinates of the point's projection onto the plane
@@ -40,7 +39,7 @@ struct SurfaceFoot
 /// This normal and the gap are continuous across the edge to a neighbour, so that the force does not jump when a point
 /// slides from one triangle to the next. The gap is measured from the quadratic surface that belongs to the normals,
 /// which is above the triangle by
-/// 1/2 (sum of w_i n_i . a_i - (sum of w_i n_i) . (sum of w_i a_i))
+///   1/2 (sum of w_i n_i . a_i - (sum of w_i n_i) . (sum of w_i a_i))
 /// (w barycentric coordinates, a corners, n normals): in the middle of a chord h of a circle of radius r by h^2/(8r).
 /// The normal is thus nearly the gradient of the gap, and a point that slides over the triangles of a curved surface
 /// hardly climbs up and down. `gradient` is the exact gradient, from the derivatives of the equation of the foot, so

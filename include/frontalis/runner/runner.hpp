@@ -91,7 +91,6 @@ public:
   /// Switches an effect off or on between two frames and returns when the switch is done. Throws the Errors of
   /// Solver::switch_effect.
   void switch_effect(Effect effect, bool on);
-  /// The effects that are switched on.
   EffectSet effects() const;
 
   /// Changes the number of frames per second of wall time, 0.1 to 1000; 0: that of the model. Throws an Error if it is

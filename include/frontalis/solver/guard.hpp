@@ -47,7 +47,7 @@ struct GuardCounts
   double seconds = 0;                      ///< wall seconds spent in checks and snapshots
 };
 
-/// Why a motion was stopped.
+/// Describes why a motion was stopped.
 struct InstabilityReport
 {
   Instability kind = Instability::none;

@@ -39,7 +39,7 @@ struct SolverSettings
   bool ledger = false;   ///< keep an account of energies (Solver::ledger); makes steps slower
 };
 
-/// External inputs of the model.
+/// External inputs of the model: activations of muscles and motions of bones.
 struct Controls
 {
   std::vector<float> activation;     ///< one per muscle, 0..1

@@ -82,7 +82,7 @@ struct Equilibrium
   double seconds = 0;   ///< simulated time [s]
 };
 
-/// Wall seconds spent since construction or reset.
+/// Wall seconds that the solver has spent since construction or reset.
 struct Profile
 {
   double stepping = 0;

@@ -76,7 +76,7 @@ struct VariantCost
   void archive(ByteArchive& archive);
 };
 
-/// The figures of one setting.
+/// The measured figures of one setting.
 struct AccuracyRow : VariantCost
 {
   std::string name;  ///< differences from the standard setting in words
@@ -92,7 +92,7 @@ struct AccuracyRow : VariantCost
   double voxels = NAN;
 };
 
-/// The rows that vary one knob.
+/// Indices of the rows in which one knob varies.
 struct KnobLine
 {
   std::string knob, words;        ///< names on the command line and in plots

@@ -133,7 +133,7 @@ RetargetResult retarget(const std::shared_ptr<const Model>& model, const Landmar
                         const FitRequest& request, const FitSettings& settings);
 
 Table retarget_table(const RetargetResult& result);
-/// A table (CSV) for `frontalis run --activations`.
+/// Converts to a table (CSV) for `frontalis run --activations`.
 std::string activations_of(const RetargetResult& result);
 
 }  // namespace frontalis

@@ -21,7 +21,7 @@ struct WrinkleSettings
   std::array<double, 3> lower{ { -1e9, -1e9, -1e9 } }, upper{ { 1e9, 1e9, 1e9 } };
 };
 
-/// A line in the skin.
+/// One furrow, a line in the skin.
 struct Furrow
 {
   double depth = 0;   ///< height of the ridges on both sides above the bottom, mean over the furrow's sections [m]

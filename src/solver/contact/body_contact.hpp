@@ -64,7 +64,6 @@ public:
     physics::Grip<double> grip;
     physics::Touching touching;
   };
-  /// The points, sorted by voxel.
   const std::vector<Point>& points() const { return points_; }
   /// Largest ratio of a point's displacement to the largest displacement of a node of its voxel.
   double spread() const { return nodes_.spread(); }
@@ -116,7 +115,7 @@ private:
         push(nodes[b], weight[b] * force);
   }
   Vector place(const Point& point, const Real* const u[3]) const;
-  /// Energies up to the present displacements.
+  /// Energies at the present displacements. Also adds the present forces [N] on nodes to `forces`, unless it is empty.
   Energy energy_now(const Real* const u[3], const std::vector<RigidTransform>& bones,
                     std::vector<std::array<double, 3>>& forces) const;
   std::vector<BodyState> next(const ConstraintStep& step) const;

@@ -23,8 +23,8 @@ public:
   double of(std::size_t contact, std::size_t point) const { return double(surfaces_[contact].points[point]); }
   /// Stiffness [N/m] of a vertex of one of Model::self_contacts.
   double of_self(std::size_t contact, std::size_t vertex) const { return of(bodies_ + contact, vertex); }
-  /// Contact's part of the bound of a voxel's stiffness [N/m]. In tissue with a Poisson's ratio of 0.49 it is at most 7
-  /// % of the voxel's own stiffness.
+  /// Contact's part of the bound of a voxel's stiffness [N/m]. In tissue with a Poisson's ratio of 0.49 it is at most
+  /// 7 % of the voxel's own stiffness.
   double in_voxel(std::size_t voxel) const override { return double(voxels_[voxel]); }
   /// Adds the internal forces [N] at displacements [m], with all points touching, sticking, and as stiff along the
   /// surface as along its normal.

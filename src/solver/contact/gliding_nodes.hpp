@@ -51,7 +51,6 @@ public:
   /// Adds a node. Add nodes in ascending order.
   void add(const Node& node) { nodes_.push_back(node); }
   std::size_t size() const { return nodes_.size(); }
-  /// Switches friction on or off.
   void rub(bool on) { rubs_ = on; }
   void list_arrays(ArrayList& list) const { list.add(Effect::sliding, "nodes that glide", nodes_); }
   /// Moves the nodes in [first, last) back to their surfaces. See RestrictedNodes::constrain.

@@ -168,7 +168,6 @@ struct TouchKernelBody
     return Lanes::gather_records(vertices.change, 4, index);
   }
 
-  // Result of a batch of pairs.
   struct Result
   {
     Batch wait;             // motion after which the pairs must be checked again [m]

@@ -13,7 +13,7 @@ EnergyLedger empty_ledger();
 class EnergyLedgerKeeper
 {
 public:
-  /// All arguments must outlive the keeper.
+  /// All arguments must outlive this object.
   EnergyLedgerKeeper(const Model& model, const Discretisation& discretisation, const Conditions& conditions,
                      StepBackend& backend);
 

@@ -10,7 +10,6 @@
 namespace frontalis
 {
 
-/// Position of a node at rest.
 physics::Vec3<double> rest_point(const Model& model, std::int32_t node);
 
 /// Level of an attached node at rest minus `ratio` times the level of its master [m]; 0 where the field ends.
@@ -28,7 +27,7 @@ public:
   /// Adds a master and its nodes, unless the master has a prescribed path, a bone of a node moves, or the nodes slide
   /// on several surfaces. Returns whether the group was added. Masters must be added in ascending order.
   bool add_group(const AttachedNode* begin, const AttachedNode* end);
-  /// Forms the blocks, after the last add_group().
+  /// Forms the blocks. Call it after the last add_group().
   void finish();
 
   bool empty() const { return masters_.empty(); }

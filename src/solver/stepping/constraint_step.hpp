@@ -7,7 +7,7 @@
 namespace frontalis
 {
 
-/// Time and bone poses of one step.
+/// Times of one step, and poses of the bones at its start and end.
 struct ConstraintStep
 {
   double time = 0;  ///< time at the end of the step [s]

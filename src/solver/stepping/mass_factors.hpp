@@ -7,7 +7,6 @@
 namespace frontalis
 {
 
-/// Properties of a voxel for mass scaling.
 struct ScaledVoxel
 {
   double stiffness;  ///< bound [N/m]

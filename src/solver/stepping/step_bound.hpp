@@ -30,7 +30,6 @@ struct IndexRange
 StepBound bound_of_nodes(const Discretisation& discretisation, const Model& model, const double* stiffness,
                          IndexRange voxels, IndexRange nodes, double* sum);
 
-/// Bound of the whole model.
 StepBound step_bound(const Discretisation& discretisation, const Model& model, const std::vector<double>& stiffness);
 
 /// Index of the stiffest of the voxels at a node; -1 if `node` is -1.

@@ -30,7 +30,7 @@ public:
       assembled.archive(archive);
     }
   };
-  /// The next plan.
+  /// Properties of the next plan.
   struct Choice
   {
     int steps;
@@ -65,7 +65,6 @@ public:
   void displacements_set(double frequency_squared);
   /// Sets the bound at rest [1/s2], which changes when effects are switched.
   void set_rest_frequency(double squared) { rest_frequency_squared_ = squared; }
-  /// Returns to the state at rest.
   void reset();
 
   const State& state() const { return state_; }

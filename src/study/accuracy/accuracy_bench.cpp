@@ -23,7 +23,6 @@ constexpr double with_settling = 1.5;
 // A file consists of this signature, a hash of its content, and the content as bytes.
 const std::string signature = fmt::format("frontalis accuracy 2, motions of generation {}\n", motion_generation);
 
-// File extension of each type of result.
 template <class T>
 constexpr const char* extension = ".motion";
 template <>

@@ -15,7 +15,7 @@ namespace
 
 constexpr double poisson = 0.49, base_young = 1e4;
 
-// A film on a base.
+// A film on a base, as planes of voxels.
 struct Layers
 {
   std::array<double, 3> spacing{ { 1e-3, 1e-3, 1e-3 } };  // edges of voxels [m]

@@ -86,7 +86,7 @@ constexpr Law find_law(MaterialList<Solids...>)
 
 }  // namespace physics
 
-/// The law of a solid: law_of<physics::Guccione>.
+/// The law of a solid, for instance law_of<physics::Guccione>.
 template <template <class> class Solid>
 constexpr Law law_of = physics::find_law<Solid>(physics::Materials{});
 static_assert(law_of<physics::NeoHookean> == Law::neo_hookean, "kernels have code of their own for the first law");

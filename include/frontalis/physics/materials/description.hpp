@@ -35,7 +35,6 @@ enum class Measure : std::uint8_t
   young_modulus  ///< [Pa]; converted to the shear modulus with Poisson's ratio
 };
 
-/// Range of valid values of a parameter.
 struct Range
 {
   double lower = 0, upper = 0;

@@ -31,7 +31,7 @@ struct Guccione
   };
 };
 
-/// The shear modulus of the stiffest direction.
+/// Shear modulus [Pa] along the stiffest direction.
 template <class T>
 FRONTALIS_LAW T shear_modulus(const Guccione<T>& material)
 {
