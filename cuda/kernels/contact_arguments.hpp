@@ -73,9 +73,9 @@ struct ContactArguments
   // State. Positions are relative to the rest position, in the frame of the body.
   float4* grips;  ///< physics::Grip: anchor [m], normal force [N]
   ContactHold* holds;
-  float4* forces;  ///< per point, written in the last step of a launch if the point touched: force [N], energy lost to
-                   ///< friction [J]
-  float4* arms;    ///< from the origin of the body's frame to the points where these forces act [m]
+  /// per point, written in the last step of a launch if the point touched: force [N], energy lost to friction [J]
+  float4* forces;
+  float4* arms;  ///< from the origin of the body's frame to the points where these forces act [m]
   // The following arrays depend on positions only, not on the history.
   float4* samples;     ///< see sample_words
   float4* clearances;  ///< position, and distance [m] within which a point need not be evaluated again

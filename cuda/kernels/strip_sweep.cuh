@@ -43,7 +43,7 @@ __device__ __forceinline__ RowValues transform_x(const Displacement& u)
   return row;
 }
 
-/// Forces on a row of nodes before the transposed x step: [component][sum, difference].
+/// Forces on a row of nodes before the transposed x step of the Walsh-Hadamard transform: [component][sum, difference].
 struct RowForces
 {
   float part[3][2];
@@ -101,7 +101,7 @@ __device__ __forceinline__ void voxel_forces(const StepArguments& g, const Eleme
     }
 }
 
-/// Transposed x step of the transform: the forces on the nodes of a row.
+/// Transposed x step of the Walsh-Hadamard transform: the forces on the nodes of a row.
 __device__ __forceinline__ void transform_x_transposed(const RowForces& row, int left, float (&force)[3])
 {
 #pragma unroll
@@ -113,7 +113,7 @@ __device__ __forceinline__ void transform_x_transposed(const RowForces& row, int
   }
 }
 
-/// Applies the transposed x step, then updates the node or stores its force.
+/// Applies the transposed x step of the transform, then updates the node or stores its force.
 __device__ __forceinline__ void step_node(const StepArguments& g, float4* next, std::uint32_t word, int left,
                                           const NodeFetch& fetch, const RowForces& row)
 {

@@ -121,7 +121,7 @@ RigidTransform inverse(const RigidTransform& pose)
 
 RigidTransform rigid_motion(const std::array<double, 3>& rotation, const std::array<double, 3>& translation)
 {
-  // Rodrigues' formula.
+  // Rodrigues' formula gives the matrix of a rotation vector.
   const double angle = std::sqrt(rotation[0] * rotation[0] + rotation[1] * rotation[1] + rotation[2] * rotation[2]);
   RigidTransform motion;
   motion.translation = translation;

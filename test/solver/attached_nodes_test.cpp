@@ -91,8 +91,8 @@ protected:
 
 }  // namespace
 
-// Relative to the bone's motion g, the displacement u of a node is its ratio times that of its master, so that the
-// tissue follows the bone at the surface.
+// The displacement of a node relative to the bone is its ratio times that of its master, so that the tissue follows the
+// bone at the surface.
 TEST_P(Attached, NodesFollowTheirMastersOnABoneThatMoves)
 {
   Model model = held_block(0);

@@ -23,8 +23,8 @@ struct SurfaceFoot
   T gap;             ///< distance of the point from the surface, negative behind it [m]
   Vec3<T> gradient;  ///< derivative of the gap with respect to the point: nearly the normal
   Vec3<T> normal;    ///< unit normal of the surface: the point is x = foot + (gap + bulge) * normal
-  T weight[3];  ///< barycentric coordinates of the foot; a negative one: the foot is beyond the edge opposite to that
-                ///< corner
+  /// barycentric coordinates of the foot; a negative one: the foot is beyond the edge opposite to that corner
+  T weight[3];
   T inside[3];  ///< barycentric coordinates of the nearest point in the triangle
   T spread[3];  ///< factors of (normal - gradient) in the gap's derivatives with respect to the corners' normals [m]
   Vec3<T> mean_normal;   ///< corner normals interpolated at the nearest point in the triangle; not of length 1

@@ -38,7 +38,7 @@ struct GuardSettings
   bool ledger = false;  ///< judge energy by the imbalance of the ledger; needs SolverSettings::ledger
 };
 
-/// Events since the guard was made.
+/// Counts of a guard's actions since it was made.
 struct GuardCounts
 {
   std::int64_t checks = 0;

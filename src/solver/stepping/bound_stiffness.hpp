@@ -14,9 +14,9 @@ namespace frontalis
 void add_stiffness_rows(const Model& model, const Binding& points, const std::vector<float>& stiffness, double factor,
                         std::vector<double>& rows);
 
-/// Distributes stiffness that is added to nodes, `rows`, among the voxels. A voxel gets its own bound, which `voxels`
-/// holds at first, times the largest ratio of `rows` to `of_voxels` at one of its nodes. `of_voxels`: sum of the
-/// voxels' bounds at each node [N/m].
+/// Converts stiffness that was added at nodes, `rows`, to stiffness that is added to voxels, such that the voxels at a
+/// node together add at least as much. The addition to a voxel is its own bound, which `voxels` holds on entry, times
+/// the largest ratio of `rows` to `of_voxels` at its nodes. `of_voxels`: sum of the voxels' bounds at each node [N/m].
 void share_rows(const Model& model, const std::vector<double>& rows, const std::vector<double>& of_voxels,
                 std::vector<float>& voxels);
 

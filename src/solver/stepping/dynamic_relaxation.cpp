@@ -10,7 +10,7 @@ namespace
 {
 
 constexpr double clear_change = 1e-4;  // relative change of displacements that clearly exceeds rounding errors
-// fraction of the highest speed so far; at lower speeds rounding errors mask the frequency
+// Fraction of the highest speed so far. At lower speeds rounding errors mask the frequency.
 constexpr double slow_share = 0.05;
 constexpr double getting_going = 4;  // phase [rad] that the slowest motion must pass before its residual is meaningful
 constexpr int enough_windows = 4;    // number of consecutive windows that must be within the tolerance

@@ -14,10 +14,9 @@ namespace
 {
 
 // These values are empirical: with them the hard cases of doc/stability.md pass.
-// fraction of the critical step in cautious steps, instead of the model's time_step_share
-constexpr double cautious_share = 0.55;
-constexpr int cautious_plan = 8;    // number of steps in a cautious plan
-constexpr int vibration_plan = 32;  // largest number of steps in a plan while tissue vibrates
+constexpr double cautious_share = 0.55;  // cautious steps: fraction of the critical step
+constexpr int cautious_plan = 8;         // number of steps in a cautious plan
+constexpr int vibration_plan = 32;       // largest number of steps in a plan while tissue vibrates
 // The following constants define signs of fast change, and the number of cautious steps after each.
 constexpr double growth_allowed = 1.1;  // ratio of squared frequencies of successive plans
 constexpr int steps_after_stiffening = 128;
