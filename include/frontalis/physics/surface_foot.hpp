@@ -23,9 +23,8 @@ struct SurfaceFoot
   T gap;             ///< distance of the point from the surface, negative behind it [m]
   Vec3<T> gradient;  ///< derivative of the gap with respect to the point: nearly the normal
   Vec3<T> normal;    ///< unit normal of the surface: the point is x = foot + (gap + bulge) * normal
-  /// barycentric coordinates of the foot; a negative one: the foot is beyond the edge opposite to that corner
-  T weight[3];
-  T inside[3];  ///< barycentric coordinates of the nearest point in the triangle
+  T weight[3];       ///< barycentric coordinates of the foot; negative beyond the edge opposite to the corner
+  T inside[3];       ///< barycentric coordinates of the nearest point in the triangle
   T spread[3];  ///< factors of (normal - gradient) in the gap's derivatives with respect to the corners' normals [m]
   Vec3<T> mean_normal;   ///< corner normals interpolated at the nearest point in the triangle; not of length 1
   Vec3<T> mean_place;    ///< the nearest point in the triangle
@@ -93,8 +92,7 @@ FRONTALIS_LAW SurfaceFoot<T> surface_foot(const SurfaceTriangle<T>& triangle, co
   const T bulge =
       N::of(0.5) * (foot.inside[1] * dot(n[1], ab) + foot.inside[2] * dot(n[2], ac) - dot(foot.mean_normal, mean));
   foot.gap = way * stretch - bulge;
-  // The foot solves x = corner 0 + weight 1 * ab + weight 2 * ac + way * direction. `bulges` are the derivatives of the
-  // bulge with respect to the weights.
+  // x = corner 0 + weight 1 * ab + weight 2 * ac + way * direction; bulges: derivatives of the bulge by the weights.
   const Vec3<T> side[3] = { { T(0), T(0), T(0) }, ab, ac };
   T bulges[3];
   for (int i = 0; i < 3; ++i)
@@ -111,9 +109,8 @@ FRONTALIS_LAW SurfaceFoot<T> surface_foot(const SurfaceTriangle<T>& triangle, co
   return foot;
 }
 
-/// Force on a corner of the triangle [N] if the force on the point is `pressed` times the gradient of the gap. The
-/// corners' forces and the moments of corner_turn() balance the force on the point in sum and moment, because the gap
-/// depends on relative positions only.
+/// Force on a corner of the triangle [N] if the force on the point is `pressed` times the gradient of the gap. With the
+/// moments of corner_turn(), the corners' forces balance that force in sum and moment.
 template <class T>
 FRONTALIS_LAW Vec3<T> corner_force(const SurfaceTriangle<T>& triangle, const SurfaceFoot<T>& foot, int corner,
                                    const T& pressed)
@@ -122,9 +119,8 @@ FRONTALIS_LAW Vec3<T> corner_force(const SurfaceTriangle<T>& triangle, const Sur
   return bulging * (triangle.normal[corner] - foot.mean_normal) - (foot.weight[corner] * pressed) * foot.gradient;
 }
 
-/// Force on a corner [N] if the force on the point is `along` the surface. The corners' forces balance the force on the
-/// point in sum and in moment: that force acts at the point's height, and its moment is balanced by forces normal to
-/// the triangle.
+/// Force on a corner [N] if the force on the point is `along` the surface. The corners' forces balance that force in
+/// sum and in moment, for which they need parts normal to the triangle.
 template <class T>
 FRONTALIS_LAW Vec3<T> corner_drag(const SurfaceFoot<T>& foot, int corner, const Vec3<T>& along)
 {
@@ -142,9 +138,8 @@ FRONTALIS_LAW Vec3<T> corner_turn(const SurfaceTriangle<T>& triangle, const Surf
          (Number<T>::of(-0.5) * pressed * foot.inside[corner]) * (triangle.corner[corner] - foot.mean_place);
 }
 
-/// Contribution of a corner's displacement to the displacement [m] of the triangle's material at the point; the adjoint
-/// of corner_drag(). In a small rigid motion of triangle and point, the contributions add up to the point's
-/// displacement.
+/// Contribution of a corner's displacement to the displacement [m] of the triangle at the point; the adjoint of
+/// corner_drag(). In a small rigid motion of triangle and point, the contributions add up to the point's displacement.
 template <class T>
 FRONTALIS_LAW Vec3<T> carried(const SurfaceFoot<T>& foot, int corner, const Vec3<T>& displacement)
 {

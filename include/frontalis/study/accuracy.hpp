@@ -38,15 +38,13 @@ struct ModelMaker
 
 struct AccuracyPlan
 {
-  /// Closed form of the displacement at equilibrium [m] as a function of the rest position on the skin [m], both in the
-  /// face frame. If it is set, errors are relative to it and found at equilibrium only, and no reference with finer
-  /// voxels is needed.
+  /// Closed form of the displacement at equilibrium [m] as a function of the rest position on the skin [m], in the face
+  /// frame. If it is set, errors are those from this form at equilibrium, and no reference with finer voxels is needed.
   std::function<Vector3(const Vector3&)> exact;
   AccuracySetting standard;               ///< the baseline; each sweep varies one of its knobs
   std::vector<AccuracyProfile> profiles;  ///< profiles of the scene, measured as further settings
   std::vector<std::string> knobs;         ///< knobs to vary one at a time; empty: all knobs, and combinations of them
-  /// voxel edges [m], coarse to fine; without `exact` the last one is for the reference only
-  std::vector<double> edges;
+  std::vector<double> edges;  ///< voxel edges [m], coarse to fine; without `exact` the last one is the reference's
   ActivationHistory history;
   double frame_rate = 30;  ///< published skins per simulated second [1/s]
   std::string folder;      ///< folder that stores the results of finished settings
@@ -104,8 +102,7 @@ struct AccuracyFindings
   bool complete = true;  ///< false: interrupted; results of finished settings are stored
   std::vector<AccuracyRow> rows;
   std::vector<KnobLine> knobs;
-  /// Pareto front, cheapest first: indices of rows such that no other row has both less cost and less error
-  std::vector<std::size_t> front;
+  std::vector<std::size_t> front;  ///< indices of the Pareto-optimal rows in cost and error, cheapest first
   AccuracySetting standard, reference;
   bool closed_form = false;    ///< whether errors are relative to the closed form instead of the reference
   double motion = 0;           ///< largest RMS displacement of the reference's skin in any phase [m]
