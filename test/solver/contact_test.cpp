@@ -39,7 +39,7 @@ TEST_P(BodiesTouch, samples_of_a_sphere_act_as_the_sphere)
   }
 }
 
-// Friction depends on the history of each point. The plate is a sphere with a radius of 1 km.
+// Friction depends on the history of each point. The plate is a sphere with a radius of 1 km, which is nearly flat.
 TEST_P(BodiesTouch, forces_and_friction_are_those_of_the_reference)
 {
   for (const bool flat : { false, true })

@@ -24,8 +24,8 @@ class AttachedBlocks
 public:
   AttachedBlocks(const Model& model, const std::vector<double>& mass, AttachKernel<Real> kernel);
 
-  /// Adds a master and its nodes, unless the master has a prescribed path, a bone of a node moves, or the nodes slide
-  /// on several surfaces. Returns whether the group was added. Masters must be added in ascending order.
+  /// Adds a master, which must not have a prescribed path, and its nodes. Returns false, and adds nothing, if a bone of
+  /// a node moves or the nodes slide on several surfaces. Masters must be added in ascending order.
   bool add_group(const AttachedNode* begin, const AttachedNode* end);
   /// Forms the blocks. Call it after the last add_group().
   void finish();

@@ -24,7 +24,7 @@ constexpr double fully_relaxed = 1e9;  // a time longer than any time constant [
 // During dynamic relaxation, a window ends after this number of steps even if no motion is found.
 constexpr int steps_per_window = 2048;
 
-// Adds the wall seconds of its lifetime to a sum.
+// Adds the wall seconds from its construction to its destruction to a sum.
 class Stopwatch
 {
 public:
