@@ -20,10 +20,10 @@ public:
   FineLines(const FineLines&) = delete;
   FineLines& operator=(const FineLines&) = delete;
 
-  /// Adds lines to the skin of a solver, in the local frame. Places the vertices that the film has added on a smooth
-  /// surface through those that the voxels carry, moves them along the normals by the height of the lines, finds the
-  /// normals anew, and sets SkinState::line_height. With a separate thread, `wait` tells whether to wait for the
-  /// heights of this skin or to use the latest that are ready.
+  /// Adds lines to the skin of a solver, in the local frame. Puts the vertices that the film has added onto a smooth
+  /// surface through those that follow the voxels, moves all of them along the normals by the height of the lines,
+  /// finds the normals anew, and sets SkinState::line_height. With a separate thread, `wait` tells whether to wait for
+  /// the heights of this skin or to use the latest that are ready.
   void add_to(SkinState& skin, bool wait);
 
   /// Makes the skin flat, as it is at rest, and discards heights that are still being computed.
