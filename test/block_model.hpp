@@ -20,7 +20,7 @@ struct BlockSettings
   double poisson = 0.49;
   double density = 1000;
   double damping = 0;
-  /// voxels for which it returns false are left out
+  /// voxels for which this function returns false are left out
   std::function<bool(std::int32_t, std::int32_t, std::int32_t)> keep;
 };
 

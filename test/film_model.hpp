@@ -11,8 +11,8 @@ namespace test
 
 constexpr double film_thickness = 0.1e-3;
 
-/// A square skin, ten wavelengths wide, of irregular triangles with six edges per wavelength, and a film of this
-/// stiffness over its base.
+/// A square skin, ten wavelengths wide, of irregular triangles with six edges per wavelength. Its film is stiffer than
+/// its base by the factor `stiffness_ratio`.
 inline Model film_model(double stiffness_ratio)
 {
   Model model;

@@ -13,9 +13,9 @@ namespace frontalis
 namespace test
 {
 
-/// Adds a piece of surface over part of a grid. `places` gives the position [m] of a point (x, y), `voxel` the voxel
-/// that moves it. Squares have a vertex in the middle, so that a uniform pressure gives each of the four nodes a
-/// quarter. The surface faces along x cross y, or the other way if it is `turned`.
+/// Adds a piece of surface over part of a grid. `place` gives the position [m] of a point (x, y), `voxel` the voxel
+/// that moves it. Each square has a vertex in the middle, so that a uniform pressure gives each of the four nodes a
+/// quarter of its force. The normal is along x cross y, or opposite to it if the surface is `turned`.
 inline void add_surface(const Model& model, SelfContact& contact, std::int32_t nx, std::int32_t ny, bool turned,
                         const std::function<std::array<double, 3>(double, double)>& place,
                         const std::function<std::array<std::int32_t, 3>(double, double)>& voxel)
@@ -52,7 +52,7 @@ inline void add_surface(const Model& model, SelfContact& contact, std::int32_t n
     }
 }
 
-/// Adds the upper or lower side of the voxels of layer k from column `begin` to `end`, moved outwards by `beyond` voxel
+/// Adds the upper or lower side of the voxels in layer k from column `begin` to `end`, moved outwards by `beyond` voxel
 /// edges.
 inline void add_side(const Model& model, SelfContact& contact, std::int32_t k, bool upper, double beyond = 0,
                      std::int32_t begin = 0, std::int32_t end = -1)
@@ -89,8 +89,8 @@ inline Model two_blocks(BlockSettings settings, double friction = 0, double beyo
   return model;
 }
 
-/// Adds a sphere whose vertices are bound to the nearest voxels: an octahedron, each triangle of which is divided into
-/// four, four times in succession.
+/// Adds a sphere whose vertices are bound to the nearest voxels. The sphere is an octahedron whose triangles are
+/// divided into four, four times in succession.
 inline void add_sphere(const Model& model, SelfContact& contact, const std::array<double, 3>& centre, double radius)
 {
   using Point = std::array<double, 3>;

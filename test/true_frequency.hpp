@@ -15,7 +15,7 @@ namespace test
 
 using Vectors = std::vector<std::array<double, 3>>;
 
-// largest eigenvalue of a symmetric matrix, by power iteration with a shift that makes it positive definite
+// Largest eigenvalue of a symmetric matrix, by power iteration with a shift that makes the matrix positive definite.
 inline double largest_eigenvalue(const std::vector<std::vector<double>>& K)
 {
   double shift = 0;
@@ -44,8 +44,8 @@ inline double largest_eigenvalue(const std::vector<std::vector<double>>& K)
   return value - shift;
 }
 
-// The true highest squared frequency over its bound, at given displacements, with every muscle at full activation.
-// `mass` [kg] of each node; `free`: indices of the free degrees of freedom.
+// The true highest squared frequency divided by its bound, at given displacements and with every muscle at full
+// activation. `mass` [kg]: of each node; `free`: indices of the free degrees of freedom.
 inline double true_over_bound(const Model& model, const Vectors& u, const std::vector<double>& mass,
                               const std::vector<std::size_t>& free)
 {

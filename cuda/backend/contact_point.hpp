@@ -13,10 +13,10 @@ namespace frontalis
 namespace cuda
 {
 
-/// Contact on the host: it keeps the account of what the device finds.
+/// Contact on the host, which sums reactions and energies from the forces that the device finds.
 using HostContact = BodyContact<double>;
 
-/// A body in the form of the device, with its field there.
+/// A body in the form that the device needs; `field` is its field in device memory.
 inline ContactBody contact_body(const Contact& contact, const physics::DistanceField& field)
 {
   ContactBody body{ field,
@@ -48,7 +48,7 @@ inline void add_pose(const ContactBody& body, const std::vector<RigidTransform>&
   }
 }
 
-/// A point of the host in the form of the device.
+/// A point in the form that the device needs.
 inline ContactPoint contact_point(const Contact& contact, const ContactBody& body, const HostContact::Point& from)
 {
   const auto at = physics::field_point(view(contact.field), from.rest);
@@ -64,7 +64,7 @@ inline ContactPoint contact_point(const Contact& contact, const ContactBody& bod
            0 };
 }
 
-/// The samples of a point of which none are stored yet.
+/// The initial copy of a point's samples, which says that none are stored yet.
 inline std::array<float4, sample_words> no_samples()
 {
   std::array<float4, sample_words> words{};
@@ -72,7 +72,7 @@ inline std::array<float4, sample_words> no_samples()
   return words;
 }
 
-/// What a step has left of a point, in the form of the host.
+/// Result of a step for a point, in the form that the host needs.
 inline HostContact::Found found_at(const ContactArguments& contact, std::size_t index, const HostContact::Point& point)
 {
   const auto vector = [](const float4& v) { return physics::Vec3<double>{ double(v.x), double(v.y), double(v.z) }; };

@@ -5,12 +5,12 @@ namespace frontalis
 namespace cuda
 {
 
-// The state arrays one after the other in device memory, and the state that the host holds.
+// A copy of the state: the state arrays one after the other in device memory, and the part of the state on the host.
 struct CudaSolver::State : BackendState
 {
   cudaStream_t stream = nullptr;  // stream on which the copy is queued
   DeviceArray<char> bytes;
-  std::size_t mode_bytes = 0;  // bytes of the mode of the highest frequency; 0 if the state has none
+  std::size_t mode_bytes = 0;  // size of the mode of the highest frequency [bytes]; 0 if the state has none
   struct
   {
     std::int64_t plans = 0;
@@ -79,7 +79,7 @@ void CudaSolver::restore(const BackendState& from)
   plans_ = state.host.plans;
   still_moved_ = state.host.still_moved;
   copy_state(state, true);
-  // wait for the copy of the frequency bound, which the host reads
+  // The host reads the frequency bound, so that its copy must be complete.
   synchronise();
 }
 

@@ -35,7 +35,7 @@ CudaSolver::CudaSolver(const BackendInput& input, const std::string& remark)
   for (const auto node : device_.still_nodes())
     still.push_back(device_.device_node()[node]);
   still_ = DeviceArray<std::uint32_t>(still);
-  // A stream that synchronises with the default stream, so that events recorded there enclose this solver's work.
+  // The stream synchronises with the default stream, so that events recorded there enclose this solver's work.
   require(cudaStreamCreate(&stream_), "making a stream");
   const std::size_t controls = sizeof(double) * (2 * model_->muscles.size() + 12 * 64 * model_->bones.size() + 2) +
                                (discretisation_.viscous_terms > 0 ? 128 * sizeof(float) : 0);
@@ -100,7 +100,7 @@ void CudaSolver::effects_switched()
   synchronise();
   device_.run(*model_, discretisation_, conditions_.running);
   launch_ = choose_launch(device_);
-  // bounds of plans that still run were found with other effects and are not used
+  // Plans that still run find their bounds with other effects, so that these bounds are not used.
   plans_ = 0;
 }
 
@@ -116,7 +116,7 @@ void CudaSolver::list_arrays(ArrayList& list)
   list.add(Effect::rigid_nodes, "still nodes", still_.bytes());
   for (const auto& slot : slots_)
     list.add(Effect::elasticity, "controls", slot.controls.bytes());
-  // the frequency bound of the latest plan limits the steps of later ones
+  // The frequency bound of the latest plan limits the steps of later ones and thus belongs to the state.
   list.add_state(slots_[(plans_ + plan_slots - 1) % plan_slots].seen.data(), sizeof(std::uint32_t));
   if (account_)
     account_->list_arrays(effect_of_fibres(*model_), list);
@@ -202,7 +202,7 @@ void CudaSolver::skin(SkinState& out)
 }
 
 // Plans of 0.5 ms are long enough to hide the host's work between them, and short enough for the time step to follow
-// tissue that stiffens. The guard's checks and dynamic relaxation wait for the device and are therefore rare.
+// tissue that stiffens. The guard's checks and dynamic relaxation have to wait for the device and are therefore rare.
 BackendTraits CudaSolver::traits() const
 {
   cudaDeviceProp device{};

@@ -21,9 +21,9 @@ struct PlanSlot
   cudaEvent_t done = nullptr;
 };
 
-/// The backend for one NVIDIA GPU, in single precision. Steps are queued without waiting: the frequency bound that a
-/// plan's last step reports limits the plan after the next. The host waits only for that bound and for requested
-/// results.
+/// The backend for one NVIDIA GPU, in single precision. Steps are queued without waiting for their results; the
+/// frequency bound that a plan's last step reports limits the plan after the next. The host waits only for that bound
+/// and for results that are requested.
 class CudaSolver : public StepBackend
 {
 public:
@@ -56,10 +56,10 @@ private:
   void stage(const StepPlan& plan, const std::vector<float>& relaxation, PlanSlot& slot, StepArguments& g);
   void step(StepArguments& g, int begin, int end);
   void do_steps(const StepPlan& plan, StepArguments& g, int begin, int end);
-  /// Adds `factor` times the forces on the points of `part` to `v`: launch_push_nodes.
+  /// Adds `factor` times the accelerations by forces on the points of `part` to `v`, as launch_push_nodes() does.
   void push(const StepArguments& g, const DevicePart& part, float factor, float* const (&v)[3]) const;
   void rest();
-  /// `springs`: with the largest stiffness of contact and shells, also where they are switched off.
+  /// `springs`: use the largest stiffness of contact and shells, even while they are switched off.
   void queue_forces(float4* at, const float* activation, float4* out, bool springs = false);
   void download(const DeviceArray<float4>& field, NodalVectors& out) const;
   /// Copies displacements to the device; an empty `in` stands for zeros.
@@ -86,8 +86,8 @@ private:
   cudaStream_t stream_ = nullptr;
   PlanSlot slots_[plan_slots];
   std::int64_t plans_ = 0;
-  int present_ = 0;           // index of the buffer that holds the present displacements
-  bool still_moved_ = false;  // whether displacements of still nodes were set from outside
+  int present_ = 0;           // index of the buffer with the present displacements
+  bool still_moved_ = false;  // whether displacements of nodes that never move were set from outside
   StepLaunch launch_{};
   std::unique_ptr<DeviceAccount> account_;
   std::unique_ptr<DeviceMonitor> monitor_;   // made on first use

@@ -37,8 +37,8 @@ StepArguments CudaSolver::arguments(double dt, bool idle_parts) const
   return g;
 }
 
-// Copies a zero frequency bound, the motion of bodies that tissue may touch, the activations, the poses and the
-// relaxation times of viscous stresses to the device in one transfer from page-locked memory. `relaxation` is empty if
+// Copies to the device, in one transfer from page-locked memory: a zero frequency bound, the motion of bodies that
+// tissue may touch, the activations, the poses, and the relaxation times of viscous stresses. `relaxation` is empty if
 // launches do not relax stresses.
 void CudaSolver::stage(const StepPlan& plan, const std::vector<float>& relaxation, PlanSlot& slot, StepArguments& g)
 {
@@ -51,7 +51,7 @@ void CudaSolver::stage(const StepPlan& plan, const std::vector<float>& relaxatio
   for (const DevicePart* const part : running)
     if (bodies.empty())
       bodies = part->motion(poses);
-  // a multiple of the size of float4
+  // The offset is a multiple of the size of float4.
   constexpr std::size_t bodies_at = 16;
   const std::size_t activation_at = bodies_at + sizeof(double) * ((bodies.size() + 1) / 2);
   const std::size_t poses_at = activation_at + sizeof(double) * muscles;
@@ -111,8 +111,8 @@ void CudaSolver::push(const StepArguments& g, const DevicePart& part, float fact
   require(launch_push_nodes(g, part.points(), factor, v, stream_), "pushing nodes");
 }
 
-// Launches all steps at once if the host has nothing to do between them, else one launch per step. In strips the forces
-// on points become changes of velocities before the step.
+// Makes all steps in one launch if the host has nothing to do between them, else in one launch per step. In strips the
+// forces on points change the velocities before each step.
 void CudaSolver::do_steps(const StepPlan& plan, StepArguments& g, int begin, int end)
 {
   if (launch_.patches && !account_ && !device_.loads().follow())
@@ -201,7 +201,8 @@ double CudaSolver::run(const StepPlan& plan)
     std::memcpy(&squared, of.seen.data(), sizeof squared);
     return double(squared);
   };
-  // The host waits for the previous plan, so that the device always has work, or for this one if motion changes fast.
+  // The host waits for the bound of the previous plan, so that the device always has work, or for that of this plan if
+  // the motion changes fast.
   if (plans_ == 1 || plan.bound_awaited)
     return seen(plans_ - 1);
   const double before = seen(plans_ - 2);
@@ -290,7 +291,7 @@ void CudaSolver::add_energies(bool open, NodalVectors& forces, EnergyLedger& led
     part->add_energies(components, conditions_.bone, open, forces, ledger);
 }
 
-// With a ledger the host has already followed every step (DevicePart::follow).
+// With a ledger the host has already processed every step (DevicePart::follow).
 std::vector<Reaction> CudaSolver::reactions() const
 {
   synchronise();

@@ -70,7 +70,7 @@ void DeviceAccount::open(const StepArguments& g, const float4* u, cudaStream_t s
 {
   for (const auto* values : { &damping_, &constraint_, &beside_, &friction_, &load_ })
     values->clear();
-  // nodes that never move are not stepped: their velocities stay 0
+  // Nodes that never move are not stepped, so that their velocities must be 0 from the beginning.
   for (int axis = 0; axis < 3; ++axis)
     for (const auto* values : { &before_[axis], &free_[axis] })
       values->clear();

@@ -17,12 +17,12 @@ public:
 
   /// Sets the arrays in which a step stores velocities for the account.
   void describe(StepArguments& g) const;
-  /// Starts a new account at displacements `u`, with the activations at the end of g's plan.
+  /// Starts a new account at displacements `u` with the activations at the end of g's plan.
   void open(const StepArguments& g, const float4* u, cudaStream_t stream);
-  /// Adds the work that fibres did since the last call, up to displacements `u`.
+  /// Adds the work that fibres have done since the previous call, up to displacements `u`.
   void measure(const StepArguments& g, const float4* u, int step, cudaStream_t stream);
-  /// Called before and after each step. g.first selects the present displacements: in before_step() those before the
-  /// step, in after_step() those after it.
+  /// Called before and after each step. g.first selects the present displacements, which are those before the step in
+  /// before_step() and those after the step in after_step().
   void before_step(const StepArguments& g, int step, cudaStream_t stream);
   void after_step(const StepArguments& g, double damping, int step, cudaStream_t stream);
   /// Returns all work except that of viscous stresses. The stream must be idle.

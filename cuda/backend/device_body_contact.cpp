@@ -56,7 +56,7 @@ DeviceBodyContact::DeviceBodyContact(const Model& model, const Discretisation& d
   reset();
 }
 
-// Each copy of a voxel in a patch has copies of its points.
+// Adds points to patches. A voxel may be in several patches; each copy of the voxel has copies of its points.
 void DeviceBodyContact::add_to_patches(const VoxelPatches& patches)
 {
   std::vector<PatchContact> of_patch;

@@ -10,11 +10,11 @@ namespace frontalis
 namespace cuda
 {
 
-/// Most points of contact in a patch.
+/// Largest number of contact points in a patch.
 std::uint32_t most_touching_points(const Model& model, const VoxelPatches& patches);
 
-/// Contact with rigid bodies in device memory. Patches find its forces in their steps, strips in kernels before each
-/// step. BodyContact adds up reactions and energies on the host, from what the device has found.
+/// Contact with rigid bodies in device memory. Patches find its forces within their steps; for strips, kernels find
+/// them before each step. BodyContact adds up reactions and energies on the host from the device's results.
 class DeviceBodyContact : public DevicePart
 {
 public:
@@ -42,10 +42,11 @@ private:
   void add_to_strips(const Model& model, const std::vector<std::uint32_t>& device_node);
 
   HostContact host_;
-  std::vector<std::uint32_t> first_point_;  // of each voxel among the host's points, and their number
-  std::vector<std::uint32_t> point_;        // of the host, of each point on the device
-  std::vector<std::uint32_t> copy_;         // of each point of the host, one on the device
-  std::array<double, 3> far_corner_;        // of the grid [m]
+  // first point of each voxel among the host's points; the last entry is their number
+  std::vector<std::uint32_t> first_point_;
+  std::vector<std::uint32_t> point_;  // index on the host of each point on the device
+  std::vector<std::uint32_t> copy_;   // index on the device of one copy of each of the host's points
+  std::array<double, 3> far_corner_;  // corner of the grid opposite to its origin [m]
   DeviceFields fields_;
   std::vector<ContactBody> host_bodies_;
   DeviceArray<ContactBody> bodies_;
@@ -53,7 +54,7 @@ private:
   DeviceArray<BoundVoxel> voxels_;
   DeviceArray<PatchContact> patches_;
   DeviceArray<uint4> corners_;
-  DeviceBoundPoints bound_;  // in strips
+  DeviceBoundPoints bound_;  // used by strips
   DeviceArray<float4> watched_, samples_, clearances_;
   DeviceArray<float4> grips_, forces_, arms_;
   DeviceArray<ContactHold> holds_;

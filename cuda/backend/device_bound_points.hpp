@@ -9,12 +9,12 @@ namespace frontalis
 namespace cuda
 {
 
-/// Points that are bound to voxels, in device memory, for kernels beside the steps.
+/// Points that are bound to voxels, in device memory, for kernels that run in addition to the step kernel.
 class DeviceBoundPoints
 {
 public:
   DeviceBoundPoints() = default;
-  /// `voxel`: of each point, ascending. `device_node`: of each model node.
+  /// `voxel`: voxel of each point, ascending. `device_node`: device node of each model node.
   DeviceBoundPoints(const Model& model, const std::vector<std::uint32_t>& voxel, const std::vector<float4>& coordinates,
                     const std::vector<std::uint32_t>& device_node);
 

@@ -7,7 +7,7 @@ namespace cuda
 namespace
 {
 
-// an empty kernel, compiled for the same architectures as all others
+// An empty kernel that is compiled for the same architectures as all others.
 __global__ void probe() {}
 
 }  // namespace

@@ -16,7 +16,7 @@ DeviceContacts::DeviceContacts(const Model& model, const std::vector<std::uint32
   fields_ = DeviceArray<physics::DistanceField>(fields);
   const auto surface_of = [&model](const SlidingNode& node) -> const ConstraintSurface&
   { return model.constraint_surfaces[node.surface]; };
-  // order: nodes with friction first; within these groups, the order in which warps process them
+  // Order: nodes with friction first, and within both groups the order in which warps process the nodes.
   std::vector<SlidingNode> nodes = model.sliding;
   std::sort(nodes.begin(), nodes.end(),
             [&](const SlidingNode& a, const SlidingNode& b)

@@ -18,7 +18,7 @@ class DeviceContacts : public EffectPart
 public:
   DeviceContacts(const Model& model, const std::vector<std::uint32_t>& device_node);
 
-  /// Enters the sliding nodes into the tasks, which are indexed by model node.
+  /// Adds the sliding nodes to the tasks, which are indexed by model node.
   void add_tasks(std::vector<NodeTask>& task_of) const;
   /// Sets the arguments that steps need.
   void describe(StepArguments& g) const;
@@ -30,7 +30,7 @@ public:
 private:
   bool rubs_ = true;
   std::vector<std::int32_t> node_;     // model node of each sliding node
-  std::vector<std::int32_t> gliding_;  // index into glides_ of each sliding node; -1: its surface is still
+  std::vector<std::int32_t> gliding_;  // index into glides_ of each sliding node; -1: its surface stands still
   DeviceFields surfaces_;
   DeviceArray<physics::DistanceField> fields_;
   DeviceArray<SlidingNodeField> sliding_;

@@ -7,8 +7,8 @@ namespace frontalis
 namespace cuda
 {
 
-// Switching an effect off keeps its arrays: entries then say that strips have no fibres, nodes have no tasks, and so
-// on.
+// Switching an effect off keeps its arrays and changes their entries, which then say, for instance, that strips have no
+// fibres or nodes have no tasks.
 
 std::vector<std::uint32_t> muscle_words(const Model& model, EffectSet running)
 {
@@ -55,7 +55,7 @@ void DeviceModel::run_fibres(const Model& model, const Discretisation& discretis
       strip.fibre_begin = Strip::none;
   strips_.upload(strips.data(), strips.size());
 
-  // the same stiffness as in the frequency bound
+  // This is the stiffness in the frequency bound as well.
   std::vector<float4> palette;
   palette_.download(palette);
   for (float4& entry : palette)
@@ -90,7 +90,7 @@ void DeviceModel::run_tasks(EffectSet running)
   patch_tasks_.upload(words.data(), words.size());
 }
 
-// The flags of `Effects` that follow from the tasks of nodes.
+// The flags of `Effects` that the tasks of nodes require.
 Effects DeviceModel::node_part(const std::vector<NodeTask>& tasks) const
 {
   Effects part = Effects::none;
@@ -105,7 +105,7 @@ Effects DeviceModel::node_part(const std::vector<NodeTask>& tasks) const
   return part;
 }
 
-// Chooses the kernel with the fewest effects that computes the running ones, for the strips' number of rows.
+// Chooses the kernel that computes the running effects and the fewest others, for the number of rows of the strips.
 void DeviceModel::choose_effects(EffectSet running)
 {
   Effects least = most_effects_ & Effects::general_element;

@@ -10,7 +10,7 @@ namespace frontalis
 namespace cuda
 {
 
-/// Fields of distance in device memory.
+/// Owns the arrays of distance fields in device memory.
 class DeviceFields
 {
 public:

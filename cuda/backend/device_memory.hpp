@@ -15,7 +15,7 @@ namespace frontalis
 namespace cuda
 {
 
-/// Throws Error with the failed operation and the message of the CUDA runtime; BackendUnavailable if memory ran out.
+/// Throws Error with the failed operation and the message of the CUDA runtime, or BackendUnavailable if memory ran out.
 inline void require(cudaError_t status, const char* what)
 {
   if (status == cudaSuccess)
@@ -26,7 +26,6 @@ inline void require(cudaError_t status, const char* what)
   throw Error(text);
 }
 
-/// An array in device memory.
 template <class T>
 class DeviceArray
 {

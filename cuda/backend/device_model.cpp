@@ -86,7 +86,7 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
   palette_of_voxel_ = add_palette(model, discretisation);
   add_fibres(model, discretisation);
   std::vector<NodeTask> tasks = add_tasks(model);
-  // nodes that never move get no inverse mass
+  // Nodes that never move have no inverse mass.
   if (discretisation.held.size() > still_nodes_.size())
   {
     const std::vector<float> of_node = mobility(discretisation);
@@ -157,7 +157,7 @@ StepArguments DeviceModel::arguments(bool idle_parts) const
   return g;
 }
 
-// Gives voxels of equal properties a common palette entry; entry 0 has no stiffness. Returns the entry of each voxel.
+// Voxels with equal properties share a palette entry; entry 0 has no stiffness. Returns the entry of each voxel.
 std::vector<std::uint32_t> DeviceModel::add_palette(const Model& model, const Discretisation& d)
 {
   const bool stabilised = d.assumed_strain;

@@ -19,13 +19,13 @@ namespace cuda
 /// Returns StepArguments::fibre_muscle: one word per fibre.
 std::vector<std::uint32_t> muscle_words(const Model& model, EffectSet running);
 
-/// The effects that a model's kernels must compute because of its voxels and its friction.
+/// The effects that a model's kernels must compute because of its voxels and of friction.
 Effects effects_of(const Model& model, const Discretisation& discretisation);
 
-/// Choice between patches, if they fit the shared memory, and strips.
+/// Choice between patches, if they fit into shared memory, and strips.
 struct CutChoice
 {
-  PatchSettings patches{ 0, 0 };  ///< first number of turns (patches per block) to try; 0 turns: use strips
+  PatchSettings patches{ 0, 0 };  ///< number of turns (patches per block) to try first; 0 turns: use strips
   std::size_t patch_bytes = 0;    ///< shared memory available for the patches of a block
   StripSettings strips;
 };
@@ -36,11 +36,11 @@ struct VoxelCut
   VoxelCut(const Model& model, const CutChoice& choice);
 
   std::unique_ptr<VoxelPatches> patches;
-  PartRoom part_room;                   ///< in patches
+  PartRoom part_room;                   ///< shared memory and threads for parts, if the model is cut into patches
   std::unique_ptr<VoxelStrips> strips;  ///< null if the model is cut into patches
 
   std::vector<std::uint32_t>& device_node() { return patches ? patches->device_node : strips->device_node; }
-  /// For each entry of the partition, 1 + the number of its model voxel, or 0 if it is empty.
+  /// For each entry of the partition, 1 + the index of its model voxel, or 0 if the entry is empty.
   std::vector<std::uint32_t> voxel_at() const;
 };
 
@@ -48,21 +48,21 @@ struct VoxelCut
 class DeviceModel
 {
 public:
-  /// Throws Error with the required and the free bytes before anything is allocated, if the memory is too small.
+  /// Throws Error with the required and the free bytes if the memory is too small, before anything is allocated.
   DeviceModel(const Model& model, const Discretisation& discretisation, const CutChoice& cut);
 
-  /// Returns step arguments with all constant data filled in. `idle_parts`: also those of parts that do not run.
+  /// Returns step arguments with all constant data. `idle_parts`: include the data of parts that are switched off.
   StepArguments arguments(bool idle_parts = false) const;
-  /// Computes only these effects from now on. No array changes its address or size.
+  /// Computes only these effects from now on. Arrays keep their addresses and sizes.
   void run(const Model& model, const Discretisation& discretisation, EffectSet running);
   void list_arrays(Effect of_fibres, ArrayList& list);
-  /// Brings all effects to their state at rest.
+  /// Sets all effects to their state at rest.
   void reset();
 
   Effects effects() const { return effects_; }
   /// How the step kernel is launched, except for the number of blocks.
   const StepLaunch& launch() const { return launch_; }
-  /// The launch with all effects of parts(), also those that are switched off.
+  /// The launch with all effects of parts(), including those that are switched off.
   StepLaunch launch_with_parts() const;
   std::size_t patches() const { return patches_.size(); }
   std::size_t strips() const { return strips_.size(); }
@@ -70,7 +70,8 @@ public:
   std::size_t nodes() const { return device_node_.size() + 1; }  ///< including the placeholder, node 0
   const std::vector<std::uint32_t>& device_node() const { return device_node_; }
   const std::vector<std::uint32_t>& palette_of_voxel() const { return palette_of_voxel_; }
-  const std::vector<std::uint32_t>& still_nodes() const { return still_nodes_; }  ///< model nodes
+  /// Model nodes that never move.
+  const std::vector<std::uint32_t>& still_nodes() const { return still_nodes_; }
   const DeviceContacts& contacts() const { return contacts_; }
   /// Contact and shells, if the model has them.
   const std::vector<std::unique_ptr<DevicePart>>& parts() const { return parts_; }
@@ -95,7 +96,7 @@ private:
 
   std::vector<EffectPart*> all_parts();
 
-  /// Copies of the arrays with all effects switched on, made at the first switch.
+  /// Copies of the arrays with all effects switched on, made when an effect is first switched.
   struct Whole
   {
     std::vector<Strip> strips;

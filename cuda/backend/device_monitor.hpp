@@ -9,7 +9,7 @@ namespace frontalis
 namespace cuda
 {
 
-/// Computes the energies and the worst voxel of a model on the device. It allocates 44 bytes per voxel.
+/// Computes the energies and the worst voxel of a model on the device. Allocates 44 bytes per voxel.
 class DeviceMonitor
 {
 public:

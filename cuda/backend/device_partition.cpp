@@ -51,7 +51,7 @@ std::vector<std::uint32_t> VoxelCut::voxel_at() const
   return at;
 }
 
-// device nodes are numbered strip by strip, so that the tasks of a strip are contiguous
+// Device nodes are numbered strip by strip, so that the tasks of a strip are contiguous.
 void DeviceModel::add_strips(VoxelStrips& strips, std::vector<NodeTask>& tasks,
                              const std::vector<std::uint32_t>& palette_entry)
 {
@@ -80,7 +80,7 @@ void DeviceModel::add_strips(VoxelStrips& strips, std::vector<NodeTask>& tasks,
                       StripSlot{ 0, 0 });
   strips_ = DeviceArray<Strip>(strips.strips);
   slots_ = DeviceArray<StripSlot>(strips.slots);
-  // padding, because words are loaded one row ahead
+  // The words are padded, because they are loaded one row ahead.
   if (!strips.fibre_words.empty())
     strips.fibre_words.resize(strips.fibre_words.size() + 32, 0);
   fibre_words_ = DeviceArray<std::uint32_t>(strips.fibre_words);

@@ -24,7 +24,7 @@ PartRoom room_for_parts(const Model& model, const VoxelPatches& patches, const s
 {
   PartRoom all;
   all.room.contact_points = most_touching_points(model, patches);
-  // points of contact have threads of their own as far as possible
+  // Points of contact have threads of their own as far as possible.
   if (all.room.contact_points > 0)
     all.threads = patches.most_voxels + all.room.contact_points;
   if (!model.shells.empty())
@@ -34,7 +34,8 @@ PartRoom room_for_parts(const Model& model, const VoxelPatches& patches, const s
 
 BoundWork bound_work(const Model& model)
 {
-  // with it the steps of the generated head are shortest
+  // Cost of a point relative to a voxel without effects. The value was chosen for the shortest steps of the generated
+  // head.
   constexpr float touch_cost = 2;
   BoundWork work;
   if (!model.contacts.empty())

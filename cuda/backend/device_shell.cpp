@@ -23,7 +23,7 @@ void sort_and_unite(std::vector<T>& list)
   list.erase(std::unique(list.begin(), list.end()), list.end());
 }
 
-// Triangles around the vertices of each voxel, ascending.
+// For each voxel, the triangles around its vertices, ascending.
 std::vector<std::vector<std::uint32_t>> triangles_at(const Model& model, const ShellMesh& mesh)
 {
   std::vector<std::vector<std::uint32_t>> at(model.voxels.size());
@@ -34,7 +34,8 @@ std::vector<std::vector<std::uint32_t>> triangles_at(const Model& model, const S
   return at;
 }
 
-// Some triangles in the order of ShellTriangles. number: of each vertex of the mesh among those that are placed.
+// The given triangles in the order of ShellTriangles. number: for each vertex of the mesh, its index among the vertices
+// whose displacements are computed.
 std::vector<float4> words_of(const ShellMesh& mesh, const std::vector<std::uint32_t>& triangles,
                              const std::vector<std::int32_t>& number)
 {
@@ -62,7 +63,7 @@ std::vector<float4> words_of(const ShellMesh& mesh, const std::vector<std::uint3
   return words;
 }
 
-// For each vertex that is placed, where the x components of the triangles' forces on it are.
+// For each of these vertices, the positions of the x components of the triangles' forces on it.
 std::vector<std::vector<std::uint32_t>> terms_of(const ShellMesh& mesh, const std::vector<std::uint32_t>& triangles,
                                                  const std::vector<std::int32_t>& number, std::size_t vertices)
 {
@@ -75,7 +76,7 @@ std::vector<std::vector<std::uint32_t>> terms_of(const ShellMesh& mesh, const st
   return terms;
 }
 
-// Adds values to a table, filled up to a whole number of words.
+// Adds values to a table and fills it up to a whole number of words.
 template <class T>
 void append(std::vector<uint4>& table, const std::vector<T>& values)
 {
@@ -147,7 +148,7 @@ void ShellTables::add(const Model& model, const ShellMesh& mesh, const Around& a
   std::vector<std::uint16_t> all_terms;
   for (std::size_t v = 0; v < vertices.size(); ++v)
   {
-    // the other vertices lack triangles
+    // The vertices of other voxels have no terms, because some of their triangles are missing here.
     const std::size_t count = v < own ? terms[v].size() : 0;
     const auto sum = static_cast<std::uint32_t>(all_terms.size() | count << 20);
     const auto& at = binding.coordinates[vertices[v]];

@@ -9,18 +9,18 @@ namespace frontalis
 namespace cuda
 {
 
-/// For each voxel of the model, those that carry vertices of the triangles around its own vertices.
+/// For each voxel of the model, the voxels that carry vertices of the triangles around the voxel's own vertices.
 std::vector<std::vector<std::int32_t>> voxels_beside(const Model& model, const ShellMesh& mesh);
 
 /// The shells of each patch, on the host.
 class ShellTables
 {
 public:
-  /// `device_node`: of each model node.
+  /// `device_node`: device node of each model node.
   ShellTables(const Model& model, const ShellMesh& mesh, const VoxelPatches& cut,
               const std::vector<std::uint32_t>& device_node);
 
-  /// Adds what they need of a block.
+  /// Adds the shared memory and threads that the shells need in a block.
   void add_room(PartRoom& all) const;
 
   std::vector<PatchShell> patches;
@@ -35,7 +35,7 @@ private:
   bool fits_indices_ = true;
 };
 
-/// Layers that are shells, in device memory.
+/// Shells of a model in device memory.
 class DeviceShell : public DevicePart
 {
 public:
@@ -60,7 +60,7 @@ private:
   bool runs_ = true;
   DeviceArray<PatchShell> patches_;
   DeviceArray<uint4> tables_;
-  // in strips
+  // used by strips:
   DeviceBoundPoints points_;
   DeviceArray<float4> words_, moved_;
   DeviceArray<uint2> sums_;

@@ -108,7 +108,7 @@ DeviceLoads::DeviceLoads(const Model& model, const Discretisation& discretisatio
           const auto& v = load.mesh.vertices[t[c]];
           return physics::Vec3<double>{ v[0], v[1], v[2] };
         };
-        // each corner takes a third of area times traction
+        // Each corner takes a third of the area times the traction.
         const double share = norm(cross(corner(1) - corner(0), corner(2) - corner(0))) / 6;
         for (const auto v : t)
           for (int axis = 0; axis < 3; ++axis)

@@ -50,7 +50,7 @@ public:
   const double* relief() const { return relief_.data(); }
   const double* ramp() const { return ramp_.data(); }
 
-  /// True if a load follows the surface, so that forces change in every step.
+  /// Whether a load follows the surface, so that forces change in every step.
   bool follow() const { return runs_ && !pressures_.empty(); }
   /// Switches loads and the correction of gravity on or off with their effects.
   void run(EffectSet running) override;

@@ -103,8 +103,8 @@ void DeviceViscosity::relax(const StepArguments& g, const float4* u, const float
             "relaxing viscous stresses");
 }
 
-// Work that viscosity has absorbed: the changes of H : E by relaxation since the account was opened, minus H : E now
-// (H: relaxed stress, E: strain).
+// Work that viscosity has absorbed: the changes of H : E by relaxation since the account was opened, minus the present
+// H : E, where H is the relaxed stress and E the strain.
 double DeviceViscosity::work() const
 {
   if (account_.size() == 0)

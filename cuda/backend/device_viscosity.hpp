@@ -15,8 +15,9 @@ namespace cuda
 class DeviceViscosity : public EffectPart
 {
 public:
-  /// `voxel_at`: 1 + the model voxel at each place of the device's order of voxels, 0 if the place is empty. `apart`:
-  /// whether a voxel that lies in several patches has stresses of its own in each, so that no patch waits for another.
+  /// `voxel_at`: 1 + the index of the model voxel at each place in the device's order of voxels, 0 if the place is
+  /// empty. `apart`: whether a voxel in several patches has stresses of its own in each of them, so that no patch waits
+  /// for another.
   DeviceViscosity(const Model& model, const Discretisation& discretisation,
                   const std::vector<std::uint32_t>& device_node, const std::vector<std::uint32_t>& voxel_at,
                   bool apart);
@@ -24,16 +25,17 @@ public:
   bool empty() const { return voxels_.size() == 0; }
   bool idle() const { return empty() || !runs_; }
   void list_arrays(ArrayList& list) override;
-  /// While viscosity is switched off, nothing is read or updated.
+  /// While viscosity is switched off, its arrays are neither read nor updated.
   void run(EffectSet running) override;
   /// Sets the arguments that steps need.
   void describe(StepArguments& g) const;
-  /// Called once the palette entries of voxels are known.
+  /// Stores the palette entries of voxels. Call it when they are known.
   void set_palette(const std::vector<std::uint32_t>& entry_of_voxel);
   /// Sets the relaxed stresses and the account of their work to zero.
   void reset() override;
   void reset_account() { account_.clear(); }
-  /// Relaxes stresses by `elapsed` [s] towards those at `u`. `u_before`: one step earlier, for the account only.
+  /// Relaxes stresses by `elapsed` [s] towards those at `u`. `u_before`: displacements one step earlier, used for the
+  /// account only.
   void relax(const StepArguments& g, const float4* u, const float4* u_before, double elapsed, cudaStream_t stream);
   /// Starts an account of the work of viscous stresses.
   void keep_account();
@@ -46,8 +48,8 @@ private:
   int terms_ = 0;
   bool runs_ = true;
   std::vector<std::uint32_t> voxel_;  // model voxel of each viscous voxel
-  std::vector<char> counted_;         // whether it is the first copy of its model voxel, which the account counts
-  std::vector<ViscousVoxel> host_;    // kept until the palette entries are known
+  std::vector<char> counted_;       // whether the entry is the first copy of its model voxel, which the account counts
+  std::vector<ViscousVoxel> host_;  // copies on the host until the palette entries are known
   DeviceArray<ViscousVoxel> voxels_;
   DeviceArray<std::uint32_t> words_;
   DeviceArray<float4> properties_;

@@ -33,7 +33,7 @@ int multiprocessors()
   return from_environment("FRONTALIS_CUDA_MULTIPROCESSORS", all, 1, all);
 }
 
-// Shared memory of a block [bytes] that patches may use: all but the kernel's array of activations.
+// Shared memory of a block that patches may use [bytes]: all of it but the kernel's array of activations.
 std::size_t bytes_for_patches()
 {
   const int all = attribute(cudaDevAttrMaxSharedMemoryPerBlockOptin);
@@ -42,9 +42,9 @@ std::size_t bytes_for_patches()
   return static_cast<std::size_t>(std::max(bytes - taken, 0));
 }
 
-// Number of patches per multiprocessor (turns) with which the largest patch is expected to fit; 0 if there is none.
-// Estimated for a curved shell or a block: the largest patch has `uneven` times the mean number of nodes, `with_border`
-// times the mean number of voxels, and a halo of `halo_share` of its nodes.
+// Number of patches per multiprocessor (turns) with which the largest patch is expected to fit; 0 if there is none. The
+// estimate is for a curved shell or a block: the largest patch has `uneven` times the mean number of nodes,
+// `with_border` times the mean number of voxels, and a halo of `halo_share` of its number of nodes.
 int expected_turns(const Model& model, int processors, std::size_t bytes)
 {
   constexpr double uneven = 1.35, with_border = 1.5, halo_share = 0.7;
@@ -66,7 +66,7 @@ CutChoice choose_cut(const Model& model, Effects effects)
   cut.patch_bytes = bytes_for_patches();
   cut.patches = { processors, from_environment("FRONTALIS_CUDA_PATCHES",
                                                expected_turns(model, processors, cut.patch_bytes), 0, most_turns) };
-  // All strips should run at the same time, with 10 % to spare: a few that start later would double the time.
+  // All strips should run at the same time, with 10 % to spare, because a few that start later would double the time.
   const double warps = 0.9 * strip_blocks(effects) * (step_block / 32) * processors;
   cut.strips.rows = strip_rows(effects);
   const double planes = static_cast<double>(model.nodes.size()) / 28 / cut.strips.rows / warps;

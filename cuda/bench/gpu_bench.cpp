@@ -1,4 +1,4 @@
-// Measures kernel time of the CUDA backend on models made in code and on baked models, and the device's bandwidth.
+// Measures kernel times of the CUDA backend on models made in code and on baked models, and the device's bandwidth.
 #include "cuda/backend/device_memory.hpp"
 #include "frontalis/error.hpp"
 #include "frontalis/model/model_file.hpp"
@@ -28,7 +28,7 @@ struct Scene
   int steps;
 };
 
-// Activations rise linearly to `wanted` within 0.3 s, as in the published set-up.
+// Activations that rise linearly to `wanted` within 0.3 s, as in the published set-up.
 Controls ramped(const Controls& wanted, double time)
 {
   Controls now = wanted;
@@ -37,7 +37,7 @@ Controls ramped(const Controls& wanted, double time)
   return now;
 }
 
-// seconds of device time of the work that `work` queues
+// Device time of the work that `work` queues [s].
 double device_seconds(const std::function<void()>& work)
 {
   cudaEvent_t begin = nullptr, end = nullptr;
@@ -54,7 +54,7 @@ double device_seconds(const std::function<void()>& work)
   return 1e-3 * milliseconds;
 }
 
-// bytes per second that copies on the device read and write: median of five runs
+// Bytes per second that copies on the device read and write: the median of five runs.
 double copy_bandwidth_of_device()
 {
   const std::size_t bytes = std::size_t(1) << 30;
@@ -65,8 +65,8 @@ double copy_bandwidth_of_device()
   return 2.0 * static_cast<double>(bytes) / spread_of(times).median;
 }
 
-// Seconds per step over a run of at least `steps` steps; the skin is fetched every `frame_wall_time` seconds, if above
-// 0.
+// Seconds per step over a run of at least `steps` steps. If `frame_wall_time` is above 0, the skin is fetched after
+// each such interval [s] of wall time.
 double seconds_of_a_run(Solver& solver, const Controls& controls, int steps, double frame_wall_time)
 {
   const std::int64_t before = solver.profile().steps;
@@ -89,7 +89,7 @@ double seconds_of_a_run(Solver& solver, const Controls& controls, int steps, dou
   return time / static_cast<double>(solver.profile().steps - before);
 }
 
-// median of five runs
+// Seconds per step: the median of five runs.
 double seconds_per_step(Solver& solver, const Controls& controls, int steps)
 {
   std::vector<double> times(5);
@@ -98,8 +98,8 @@ double seconds_per_step(Solver& solver, const Controls& controls, int steps)
   return spread_of(times).median;
 }
 
-// The fraction of time that fetching the skin 60 times per wall second adds: median of nine runs, each compared with
-// the mean of the runs without it before and after, because the motion goes on meanwhile.
+// Fraction of time that fetching the skin 60 times per wall second adds. It is the median of nine runs, each compared
+// with the mean of the runs before and after it in which the skin is not fetched, because the motion goes on meanwhile.
 double share_of_skin(Solver& solver, const Controls& controls, int steps)
 {
   std::vector<double> shares(9);
@@ -114,7 +114,7 @@ double share_of_skin(Solver& solver, const Controls& controls, int steps)
   return spread_of(shares).median;
 }
 
-// Voxels per second of the dense blocks of this run, by name; other models are compared with them.
+// Voxels per second of the dense blocks of this run, by name. The rates of other models are compared with these.
 using DenseRates = std::vector<std::pair<std::string, double>>;
 
 void bench(const Scene& scene, DenseRates& dense)
@@ -127,7 +127,8 @@ void bench(const Scene& scene, DenseRates& dense)
   cuda::require(cudaMemGetInfo(&free_after, &total), "asking for free memory");
   const double built = wall_seconds() - start;
   Controls controls = solver->controls();
-  // at rest no node enters another cell of its field: the motion's additional time is the cost of entering cells
+  // At rest no node enters another cell of its field. The additional time while the tissue moves is the cost of
+  // entering cells.
   solver->advance(256 * solver->time_step(), controls);
   const double still = model->muscles.empty() ? 0 : seconds_per_step(*solver, controls, scene.steps);
   solver->reset();
@@ -178,7 +179,7 @@ int run(int count, char** arguments)
   const std::vector<std::string> wanted(arguments + 1, arguments + count);
   const auto is_wanted = [&](const std::string& name)
   {
-    // the largest model runs only if it is named, because it takes minutes to build
+    // The largest model takes minutes to build and runs only if it is named.
     return wanted.empty() ? name != "block_512" : std::find(wanted.begin(), wanted.end(), name) != wanted.end();
   };
   if (is_wanted("copy"))
@@ -187,7 +188,7 @@ int run(int count, char** arguments)
   for (const Scene& scene : scenes())
     if (is_wanted(scene.name))
       bench(scene, dense);
-  // baked models
+  // Names with a dot are files of baked models.
   for (const std::string& name : wanted)
     if (name.find('.') != std::string::npos)
       bench({ name.substr(name.rfind('/') + 1), [&] { return read_model(name); }, 10000 }, dense);

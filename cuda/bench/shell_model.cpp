@@ -13,15 +13,15 @@ namespace
 
 using Point = physics::Vec3<double>;
 
-// semi-axes of the outer ellipsoid (up, lateral, out), and the part of it that is used [m]
+// Semi-axes of the outer ellipsoid (up, lateral, outwards), and the part of the ellipsoid that is used [m].
 constexpr double axes[3] = { 130e-3, 78e-3, 92e-3 };
-constexpr double height = 48e-3;                          // extends from -height to height
+constexpr double height = 48e-3;                          // the part extends from -height to height
 constexpr double half_width = 66e-3;                      // lateral
 constexpr double sheet_from = 3.0e-3, sheet_to = 4.2e-3;  // depth of the muscles' sheet
 
 double thickness(double up) { return 5.5e-3 + 1.2e-3 * std::exp(-std::pow((up + height) / 20e-3, 2)); }
 
-// depth below the outer surface [m], to first order
+// Depth below the outer surface, to first order [m].
 double depth(const Point& p)
 {
   const double q = std::sqrt(std::pow(p.x / axes[0], 2) + std::pow(p.y / axes[1], 2) + std::pow(p.z / axes[2], 2));
@@ -36,7 +36,7 @@ double overlap(double from, double to, double middle, double width)
 
 double half_depth(double up, double lateral, double below)
 {
-  // z of the point at that depth, by bisection
+  // Finds z of the point at that depth by bisection.
   double low = 10e-3, high = axes[2];
   for (int i = 0; i < 50; ++i)
   {
@@ -46,7 +46,7 @@ double half_depth(double up, double lateral, double below)
   return 0.5 * (low + high);
 }
 
-// a sheet at a depth that may vary with height, as a grid of triangles facing out
+// A sheet as a grid of triangles that face outwards, at a depth that may vary with height.
 template <class Depth>
 TriangleMesh sheet(double margin, double spacing, const Depth& at)
 {
@@ -101,7 +101,7 @@ struct ShellBuilder
 {
   const ShellSettings& s;
   Model model;
-  Point origin{};  // of the local frame in the shell's
+  Point origin{};  // origin of the local frame in the frame of the ellipsoid
 
   explicit ShellBuilder(const ShellSettings& settings) : s(settings)
   {
@@ -142,7 +142,7 @@ struct ShellBuilder
       if (in_sheet <= 0 || std::abs(p.x - shape.up) > shape.half_up ||
           std::abs(p.y - shape.lateral) > shape.half_lateral)
         continue;
-      // along the sheet: remove the direction's component along the normal
+      // Removes the direction's component along the normal, so that it is along the sheet.
       Point normal{ p.x / (axes[0] * axes[0]), p.y / (axes[1] * axes[1]), p.z / (axes[2] * axes[2]) };
       normal = (1 / norm(normal)) * normal;
       Point a{ shape.direction[0], shape.direction[1], 0 };
@@ -207,7 +207,7 @@ struct ShellBuilder
     slide_on(model, "bone", above_bone, sliding);
   }
 
-  // binds points to the nearest voxel straight below them
+  // Binds points to the nearest voxel straight below them.
   void bind(const std::vector<std::array<double, 3>>& points, Binding& binding) const
   {
     std::vector<std::int32_t> top(static_cast<std::size_t>(model.size[0]) * model.size[1], -1);

@@ -14,9 +14,9 @@ struct Velocities
   float* v[3];
 };
 
-// Each lane adds up the points of one of the node's voxels. The sums of eight lanes are added in a fixed order.
-// `masses`: displacements with inverse masses. `forces`: internal forces, to which the opposite is added if there are
-// no velocities.
+// Each lane adds up the forces on the points of one of a node's voxels. The sums of eight lanes are then added in a
+// fixed order. `masses`: displacements with inverse masses. `forces`: internal forces, to which the opposite of the sum
+// is added if `to` has no velocities.
 __global__ void __launch_bounds__(block)
     push_nodes(const BoundPoints points, float factor, const float4* masses, const Velocities to, float4* forces)
 {

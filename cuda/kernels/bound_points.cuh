@@ -8,7 +8,7 @@ namespace frontalis
 namespace cuda
 {
 
-/// Adds part of a voxel's displacement: corner b of weight w.
+/// Adds the contribution of a voxel's corner of weight w to a displacement.
 __device__ __forceinline__ void add_part(physics::Vec3<float>& sum, float w, const float4& u)
 {
   sum = sum + w * physics::Vec3<float>{ u.x, u.y, u.z };
@@ -20,7 +20,7 @@ __device__ __forceinline__ float corner_weight(std::uint32_t b, float x, float y
   return (b & 1 ? x : 1 - x) * (b & 2 ? y : 1 - y) * (b & 4 ? z : 1 - z);
 }
 
-/// Displacement of a point at `coordinates` in a voxel with these corners, of which `u` has the displacements.
+/// Displacement of a point with these coordinates in a voxel. `low`, `high`: the voxel's corners, as indices into `u`.
 __device__ __forceinline__ physics::Vec3<float> bound_displacement(const float4& coordinates, const uint4& low,
                                                                    const uint4& high, const float4* u)
 {

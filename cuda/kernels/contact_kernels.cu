@@ -7,7 +7,7 @@ namespace frontalis
 namespace cuda
 {
 
-// In strips, contact has kernels of its own before each step. Its forces become changes of the nodes' velocities.
+// In strips, contact has kernels of its own, which run before each step. Its forces change the velocities of nodes.
 
 constexpr int block = 128;
 

@@ -9,11 +9,11 @@ namespace frontalis
 namespace cuda
 {
 
-// Points of the tissue that may touch bodies. What a point does in a step is that of BodyContact::voxel_readings(), in
-// single precision. Places are relative to rest, so that they are exact to nanometres.
+// Points of the tissue that may touch bodies. They follow the same rules as the points of BodyContact, in single
+// precision. Positions are relative to rest, so that they are exact to nanometres.
 
-/// Pose of a body at the start of a step: its inverse rotation is 1 + `less`. In the body's frame a point at
-/// middle + arm + moved has gone from its rest position by moved + shift + less * (arm + moved).
+/// Pose of a body at the start of a step. Its inverse rotation is 1 + `less`. In the body's frame, a point at middle +
+/// arm + moved has moved from its rest position by moved + shift + less * (arm + moved).
 struct BodyPose
 {
   physics::Vec3<float> less[3];  ///< rows
@@ -39,7 +39,8 @@ __device__ __forceinline__ BodyPose body_pose_at(const StepArguments& g, int ste
   return { { { x.x, x.y, x.z }, { y.x, y.y, y.z }, { z.x, z.y, z.z } }, { x.w, y.w, z.w } };
 }
 
-/// Copies the samples of another cell to a point. Returns false, and copies nothing, if none are stored there.
+/// Copies the samples of another cell to a point's own copy. Returns false, and copies nothing, if the cell has no
+/// samples.
 static __device__ __noinline__ bool enter_contact_cell(const ContactArguments& c, std::uint32_t index,
                                                        std::uint32_t code)
 {
@@ -51,7 +52,8 @@ static __device__ __noinline__ bool enter_contact_cell(const ContactArguments& c
   return true;
 }
 
-/// The distance of a point that has gone by `gone` from its body. Returns false if no samples are stored there.
+/// Finds the field of its body at a point that has moved by `gone`, in the body's frame. Returns false if no samples
+/// are stored there.
 __device__ __forceinline__ bool distance_at(const ContactArguments& c, std::uint32_t index, const ContactPoint& point,
                                             const ContactBody& body, const physics::Vec3<float>& gone,
                                             physics::FieldValue<float>& value)
@@ -67,7 +69,7 @@ __device__ __forceinline__ bool distance_at(const ContactArguments& c, std::uint
                        [&](std::uint32_t code) { return aside(enter_contact_cell)(c, index, code); });
 }
 
-/// A place in the frame of a bone, in double precision.
+/// A point's position in the frame of a bone, in double precision.
 __device__ __forceinline__ physics::Vec3<double> from_bone(const StepArguments& g, int step, const ContactBody& body,
                                                            const ContactPoint& point, const physics::Vec3<float>& moved)
 {
@@ -83,23 +85,23 @@ __device__ __forceinline__ physics::Vec3<double> from_bone(const StepArguments& 
            body.middle[2] + double(point.arm[2]) + double(moved.z) - origin[2] };
 }
 
-/// A point in a step.
+/// A point of contact in one step.
 struct PointStep
 {
   std::uint32_t index;
   int step;
-  bool last;                   ///< of the launch: the force is left for the host
-  physics::Vec3<float> moved;  ///< from rest, at the start of the step [m]
+  bool last;                   ///< whether the step is the last one of the launch, whose forces the host reads
+  physics::Vec3<float> moved;  ///< displacement at the start of the step [m]
 };
 
 /// How a body pushes a point in one step.
 struct Push
 {
-  physics::Vec3<float> force;  ///< on it [N]
-  float free_way;              ///< by which it may move before it must be looked at again [m]
+  physics::Vec3<float> force;  ///< force on the point [N]
+  float free_way;              ///< distance by which the point may move before it must be evaluated again [m]
 };
 
-/// Leaves the force of a point in this step.
+/// Stores the force on a point for the host if the step is the last one of the launch.
 __device__ __forceinline__ void leave_force(const StepArguments& g, const PointStep& at, const ContactPoint& point,
                                             const ContactBody& body, const physics::Vec3<float>& force, float lost)
 {
@@ -163,7 +165,7 @@ __device__ __forceinline__ Push find_push(const StepArguments& g, const ContactP
     c.clearances[at.index].w = 0;
   else if (!far)
   {
-    // a little less, for what rounding takes
+    // The factor makes up for rounding errors.
     distance = 0.999f * (sampled ? value.value / static_cast<float>(physics::steepest_field)
                                  : static_cast<float>(physics::distance_without_samples(
                                        body.field, double(body.reach),

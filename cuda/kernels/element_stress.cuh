@@ -21,7 +21,7 @@ __device__ __forceinline__ std::uint32_t largest_of_warp(std::uint32_t value)
 #endif
 }
 
-/// Data of a voxel other than its deformation. Its first fibre is loaded early to hide memory latency.
+/// Data of a voxel other than its deformation. The first fibre is loaded early to hide memory latency.
 struct ElementPlace
 {
   std::uint32_t palette;
@@ -31,11 +31,12 @@ struct ElementPlace
   std::uint32_t viscous;
 };
 
-/// Activations in a step of a plan. They change linearly from its start to its end.
+/// Activations in a step of a plan. They change linearly from the start of the plan to its end.
 struct Activations
 {
-  const float2* of;  ///< one per muscle, in shared memory: value at the start, and change until the end
-  float fraction;    ///< fraction of the plan that has passed at the end of the step
+  /// one entry per muscle, in shared memory: value at the start of the plan, and change until its end
+  const float2* of;
+  float fraction;  ///< fraction of the plan that has passed at the end of the step
 
   __device__ __forceinline__ float operator[](std::uint32_t muscle) const
   {
@@ -44,7 +45,7 @@ struct Activations
   }
 };
 
-/// Loads activations into shared memory. All threads of a block call it once per launch.
+/// Loads activations into shared memory. All threads of a block must call this function once per launch.
 __device__ __forceinline__ void load_activations(const StepArguments& g, float2* to)
 {
   for (std::int32_t m = threadIdx.x; m < g.muscles; m += blockDim.x)
@@ -64,7 +65,7 @@ __device__ __forceinline__ void fetch_fibre(const StepArguments& g, std::uint32_
   place.muscle_word = __ldg(g.fibre_muscle + (word >> 4));
 }
 
-/// Makes a fibre from an entry of StepArguments::fibres and its word of fibre_muscle.
+/// Makes a fibre from an entry of StepArguments::fibres and the entry's word of fibre_muscle.
 __device__ __forceinline__ physics::Fibre<float, float> fibre_of(const float4& entry, std::uint32_t word,
                                                                  float activation)
 {
@@ -114,7 +115,7 @@ struct ElementVoxel : PaletteVoxel<float, With>
   }
   __device__ __forceinline__ void gauss_forces(float (&mode)[3][8], bool with_bound, float& stiffness) const
   {
-    // a copy, so that the modes of other voxels stay in registers
+    // The copy lets the modes of other voxels stay in registers.
     float force[3][8];
     for (int c = 0; c < 3; ++c)
       for (int m = 0; m < 8; ++m)
@@ -127,8 +128,9 @@ struct ElementVoxel : PaletteVoxel<float, With>
 };
 
 /// Replaces the transformed displacements of a voxel by the forces conjugate to them. `relaxes`: time by which viscous
-/// stresses relax before that [s]. Palette entry 0 has no stiffness, so that entries without a voxel yield exact zeros.
-/// `stiffness` is 0 before the call; if `with_bound` is set it becomes the present stiffness bound [N/m].
+/// stresses relax before the forces are computed [s]. Palette entry 0 has no stiffness, so that places without a voxel
+/// yield exact zeros. `stiffness` must be 0 before the call; if `with_bound` is set, it becomes the bound of the
+/// present stiffness [N/m].
 template <Effects With>
 __device__ __forceinline__ void element_forces(const StepArguments& g, const ElementPlace& place,
                                                const Activations& activation, float relaxes, float (&mode)[3][8],
@@ -143,7 +145,7 @@ __device__ __forceinline__ void element_forces(const StepArguments& g, const Ele
     physics::stress_forces(voxel, P, c, mode[c]);
 }
 
-/// Bit pattern of a non-negative number. Bit patterns are ordered like the numbers, and NaN is above all.
+/// Bit pattern of a non-negative number. Bit patterns are in the order of the numbers, and NaN is above all of them.
 __device__ __forceinline__ std::uint32_t bits_of(float x) { return __float_as_uint(x) & 0x7fffffffu; }
 
 /// Bits of the bound of the squared highest frequency at a node, from the summed stiffness of its voxels.

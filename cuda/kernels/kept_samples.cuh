@@ -7,8 +7,8 @@ namespace frontalis
 namespace cuda
 {
 
-/// Hides the address of a rarely called function from the compiler, which would otherwise allocate the registers of the
-/// function and its caller together and spill.
+/// Hides the address of a rarely called function from the compiler. The compiler would otherwise allocate the registers
+/// of the function and its caller together and spill some of them.
 template <class Function>
 __device__ __forceinline__ Function* aside(Function* function)
 {
@@ -17,21 +17,21 @@ __device__ __forceinline__ Function* aside(Function* function)
   return reinterpret_cast<Function*>(address);
 }
 
-/// The samples of a field around a node or a point, in a copy of its own, which the threads of a warp load together
-/// (see sample_words). In most steps the node or point stays in its cell, so that the copy is valid.
+/// The samples of a field around a node or a point. Each node or point has its own copy, which the threads of a warp
+/// load together (see sample_words). In most steps a node or point stays in its cell, so that its copy remains valid.
 struct KeptSamples
 {
   float4* words;
-  std::uint32_t count, index;  ///< number of all copies; index of this one
+  std::uint32_t count, index;  ///< number of all copies, and index of this one
 
-  /// The n-th of the copy's 28 numbers.
+  /// The n-th of the 28 numbers in the copy.
   __device__ __forceinline__ float& number(int n) const
   {
     return reinterpret_cast<float*>(words + n / 4 * count + index)[n % 4];
   }
 
   /// Copies the samples of a cell, minus a level. `code`: the cell relative to `home` (middle_cell). Returns false, and
-  /// copies nothing, if none are stored there.
+  /// copies nothing, if the cell has no samples.
   __device__ __forceinline__ bool copy(const physics::DistanceField& field, const std::int32_t (&home)[3],
                                        std::uint32_t code, float level) const
   {
@@ -47,8 +47,8 @@ struct KeptSamples
     return true;
   }
 
-  /// The field at `offset` from the cell of the rest position. `kept`: code of the cell whose samples are in the copy;
-  /// enter(code) copies those of another cell. Returns false if no samples are stored there.
+  /// Finds the field at `offset` from the cell of the rest position. `kept`: code of the cell whose samples are in the
+  /// copy; enter(code) replaces them by those of another cell. Returns false if no samples are stored there.
   template <class Enter>
   __device__ __forceinline__ bool value_at(float inverse_spacing, const physics::Vec3<float>& offset,
                                            std::uint32_t kept, physics::FieldValue<float>& value,

@@ -10,7 +10,7 @@ namespace cuda
 
 constexpr int block = 128;
 
-/// A voxel as the monitor evaluates it, with its geometry in double precision.
+/// A voxel in the form that the monitor evaluates, with its geometry in double precision.
 struct LookedVoxel : PaletteVoxel<double, Effects::general_element>
 {
   const double* grid_scale;
@@ -64,8 +64,8 @@ __global__ void __launch_bounds__(block)
     parts[blockIdx.x] = sums[0];
 }
 
-// Adds voxels' stiffness to nodes at one corner. A node is this corner of at most one voxel, which fixes the sum's
-// order.
+// Adds the stiffness of all voxels to their nodes at one corner. A node is this corner of at most one voxel, so that
+// the sum over eight launches has a fixed order.
 __global__ void __launch_bounds__(block) add_to_corners(const __grid_constant__ MonitorVoxels voxels, int corner)
 {
   for (std::uint32_t e = blockIdx.x * block + threadIdx.x; e < voxels.count; e += gridDim.x * block)

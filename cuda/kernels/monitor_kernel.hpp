@@ -6,7 +6,7 @@
 namespace frontalis
 {
 
-/// A voxel as the monitor reads it.
+/// A voxel in the form that the monitor reads.
 struct MonitorVoxel
 {
   std::uint32_t node[8];  ///< device nodes
@@ -17,10 +17,10 @@ struct MonitorVoxels
 {
   const MonitorVoxel* voxels;  ///< in the model's order
   std::uint32_t count;
-  std::uint32_t nodes;    ///< device nodes
+  std::uint32_t nodes;    ///< number of device nodes
   double scale[3];        ///< 1 / (4 h)
-  float* stiffness;       ///< scratch: bound of each voxel [N/m]
-  float* node_stiffness;  ///< scratch: sum of the bounds at each node [N/m]
+  float* stiffness;       ///< temporary: bound of each voxel [N/m]
+  float* node_stiffness;  ///< temporary: sum of the bounds at each node [N/m]
 };
 
 /// The highest squared frequency bound [1/s2] among the nodes of some voxels, and the stiffest voxel at that node.
@@ -30,7 +30,8 @@ struct StiffestVoxel
   float stiffness = 0;  ///< bound [N/m]
   std::int32_t voxel = -1;
 
-  /// Keeps the larger one, in whatever order parts are added. Values that are not finite count as the largest.
+  /// Keeps the larger one of the two. The result does not depend on the order; values that are not finite count as the
+  /// largest.
   FRONTALIS_LAW void add(const StiffestVoxel& part)
   {
     const bool none = frequency_squared != frequency_squared;

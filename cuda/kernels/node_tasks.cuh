@@ -61,8 +61,8 @@ static __device__ __noinline__ void follow_bone(const StepArguments& g, std::int
     physics::move_to(to[i], old[i], g.dt, n.u[i], n.v[i]);
 }
 
-/// One function per NodeEffect, called through a table to keep their registers out of the kernels. `With`: effects of
-/// nodes.
+/// One function per NodeEffect. They are called through a table, so that their registers do not count for the kernels.
+/// `With`: effects of nodes.
 using NodeFunction = void (*)(const StepArguments& g, std::int32_t index, const NodeStep& at, NodeState& n);
 template <Effects With>
 static __device__ const NodeFunction node_functions[node_effects] = {
@@ -85,12 +85,13 @@ static __device__ __noinline__ void apply_task(const StepArguments& g, const Nod
       node_functions<With>[effect](g, task.of[effect], at, n);
 }
 
-/// Applies a task after its node's update was written. Not inlined, which saves registers in the sweep through a strip.
+/// Applies a task after its node's update was written. This function is not inlined, which saves registers in the sweep
+/// through a strip.
 template <Effects With>
 static __device__ __noinline__ void run_task(const StepArguments& g, std::uint32_t index, const float4* u, float4* next,
                                              int step)
 {
-  // issue all loads at once, because memory latency dominates here
+  // All loads are issued at once, because memory latency dominates here.
   const NodeTask task = g.tasks[index];
   const std::int32_t sliding = task.of[node_sliding];
   const bool slides = has<With, Effects::sliding> && slides_only(task);
@@ -99,7 +100,7 @@ static __device__ __noinline__ void run_task(const StepArguments& g, std::uint32
     fetch_sliding<With>(g, sliding, fetch);
   const float4 before = u[task.node], now = next[task.node];
   NodeState n{ { now.x, now.y, now.z }, { g.v[0][task.node], g.v[1][task.node], g.v[2][task.node] } };
-  // take the inverse mass from the new buffer: a step may never have written it to the old one
+  // The inverse mass is taken from the new buffer, because a step may never have written it to the old one.
   const float4 old = make_float4(before.x, before.y, before.z, now.w);
   if (slides)
     slide<With>(g, sliding, { old, task.node, step }, fetch, n);
@@ -110,7 +111,7 @@ static __device__ __noinline__ void run_task(const StepArguments& g, std::uint32
     g.v[i][task.node] = n.v[i];
 }
 
-/// Applies tasks [begin, end). Whole warps call it. `With`: effects of nodes.
+/// Applies tasks [begin, end). All threads of a warp must call this function. `With`: effects of nodes.
 template <Effects With>
 __device__ __forceinline__ void run_tasks(const StepArguments& g, std::uint32_t begin, std::uint32_t end,
                                           const float4* u, float4* next, int step)
@@ -128,12 +129,12 @@ struct NodeFetch
 
 __device__ __forceinline__ NodeFetch fetch_node(const StepArguments& g, const float4* u, std::uint32_t word)
 {
-  // Loads do not wait for the node's flags. What is loaded for nodes of other strips is not used.
+  // Loads do not wait for the node's flags. Data loaded for nodes of other strips is not used.
   const std::uint32_t node = word & StripSlot::node_mask;
   return { u[node], { g.v[0][node], g.v[1][node], g.v[2][node] } };
 }
 
-/// Returns a node after one step of the damped central difference scheme.
+/// Returns the state of a node after one step of the damped central difference scheme.
 __device__ __forceinline__ NodeState updated(const StepArguments& g, std::uint32_t node, const NodeFetch& fetch,
                                              const float* force)
 {

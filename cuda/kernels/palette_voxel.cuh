@@ -10,7 +10,7 @@ namespace frontalis
 namespace cuda
 {
 
-// Functions for rare kinds of voxel are not inlined, so that they do not cost the others registers.
+// Functions for rare kinds of voxel are not inlined, so that common voxels do not need registers for them.
 template <class T>
 static __device__ __noinline__ void add_laws_apart(const StepArguments& g, std::uint32_t palette,
                                                    const physics::Kinematics<T>& k, physics::Matrix3<T>& P);
@@ -24,7 +24,7 @@ struct PaletteVoxel
 {
   const StepArguments& g;
   std::uint32_t palette;
-  std::uint32_t viscous;  ///< number of the viscous voxel
+  std::uint32_t viscous;  ///< index of the voxel among the viscous ones
   float4 entry;           ///< StepArguments::palette
 
   __device__ __forceinline__ const float* scale() const { return g.scale; }
@@ -138,7 +138,7 @@ static __device__ __noinline__ void gauss_forces_apart(const StepArguments& g, s
   physics::gauss_forces(palette_voxel<float>(g, palette), mode, with_bound, stiffness);
 }
 
-/// Relaxes viscous stresses within a step, which is rare. Works on a copy, so that other voxels stay in registers.
+/// Relaxes viscous stresses within a step, which happens rarely. Uses a copy, so that other voxels stay in registers.
 template <Effects With>
 static __device__ __noinline__ void relax_copy(const StepArguments& g, std::uint32_t palette, std::uint32_t viscous,
                                                float elapsed, const physics::Kinematics<float>& k)

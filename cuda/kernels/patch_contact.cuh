@@ -7,7 +7,7 @@ namespace frontalis
 namespace cuda
 {
 
-// Contact with bodies in patches, whose shared memory it uses.
+// Contact with bodies in patches. It uses part of their shared memory.
 
 /// Layout of the shared memory of a block; see patch_bytes().
 struct PatchMemory
@@ -16,11 +16,11 @@ struct PatchMemory
   float* v[3];          // velocities of own nodes
   float* force;         // [corner][component][voxel], then stiffness; the last column belongs to no voxel and stays 0
   std::uint32_t width;  // length of a row of `force`
-  float4* push;         // of each point of contact: force on it and its coordinates
+  float4* push;         // per point of contact: force on it, and its coordinates
   float4* shell;        // displacements of vertices of shells, and forces of triangles
   uint4* tables;        // see PatchShell
-  std::uint32_t*
-      least;  // two entries: see put_pushes(). While a slow thread reads that of a patch, the next uses another.
+  // two entries, used in turn (see put_pushes()), because slow threads may still read that of the previous patch
+  std::uint32_t* least;
 };
 
 template <Effects With>
@@ -53,14 +53,14 @@ __device__ __forceinline__ void split(const uint4& words, std::uint32_t (&out)[8
   }
 }
 
-/// What a thread knows of its patch's contact in a step. Points are skipped until nodes and bodies together have moved
-/// as far as the nearest point was away when they were looked at. At the start of a launch they are looked at. The
-/// bodies' way since the start of the plan may become `until`, less that of the nodes.
+/// A thread's record of its patch's contact in a step. All points are evaluated at the start of a launch, and again
+/// only when nodes and bodies together have moved as far as the nearest point was then away from its body. The bodies'
+/// motion since the start of the plan plus that of the nodes must not exceed `until`.
 struct ContactWatch
 {
-  float way;      ///< by which nodes may have moved since [m]; not positive: points are looked at
-  float4 node;    ///< the first of its watched nodes
-  bool moved_on;  ///< one of its nodes has moved farther
+  float way;    ///< distance by which nodes may have moved since the evaluation [m]; not positive: evaluate the points
+  float4 node;  ///< the first of the thread's watched nodes
+  bool moved_on;  ///< whether one of the thread's nodes has moved farther
 };
 
 __device__ __forceinline__ ContactWatch fetch_watch(const StepArguments& g, const PatchContact& contact, float until,
@@ -75,7 +75,7 @@ __device__ __forceinline__ ContactWatch fetch_watch(const StepArguments& g, cons
   return watch;
 }
 
-/// Compares the displacements of watched nodes.
+/// Compares the displacements of the watched nodes with those at the latest evaluation.
 __device__ __forceinline__ void look_at_watched(const StepArguments& g, const PatchContact& contact,
                                                 const PatchMemory& memory, ContactWatch& watch)
 {
@@ -86,15 +86,15 @@ __device__ __forceinline__ void look_at_watched(const StepArguments& g, const Pa
     const float4 then = i == threadIdx.x ? watch.node : g.contact.watched[contact.node_begin + i];
     const float4 now = memory.place[__float_as_uint(then.w)];
     const float x = now.x - then.x, y = now.y - then.y, z = now.z - then.z;
-    // also where the motion has diverged
+    // The negated condition is also true if the motion has diverged.
     if (!(x * x + y * y + z * z < watch.way * watch.way))
       watch.moved_on = true;
   }
 }
 
-/// Finds the forces on the patch's points of contact. Threads take points from the last thread on, because the first
-/// ones have the more voxels. Returns whether one of this thread's points is pushed. Lowers `least`, bits of the way by
-/// which all points may move before they must be looked at again.
+/// Finds the forces on the patch's points of contact. Points are given to threads in reverse order, because the first
+/// threads have more voxels. Returns whether one of this thread's points is pushed. Lowers `least`, the bits of the
+/// distance by which all points may move before they must be evaluated again.
 __device__ __forceinline__ bool put_pushes(const StepArguments& g, const PatchContact& contact,
                                            const PatchMemory& memory, int step, std::uint32_t* least)
 {
@@ -126,12 +126,12 @@ __device__ __forceinline__ bool put_pushes(const StepArguments& g, const PatchCo
   }
   if (free_way < endless)
     atomicMin(least, __float_as_uint(free_way));
-  // a point that touches may not move at all
+  // A point that touches must be evaluated in every step.
   return free_way == 0;
 }
 
-/// Adds the forces on points to those on the corners of their voxels, in the order of the points. Each thread has a
-/// corner of a voxel.
+/// Adds the forces on points to those on the corners of their voxels, in the order of the points. Each thread processes
+/// a corner of a voxel.
 __device__ __forceinline__ void add_pushes(const StepArguments& g, const PatchContact& contact,
                                            const PatchMemory& memory)
 {
@@ -146,15 +146,15 @@ __device__ __forceinline__ void add_pushes(const StepArguments& g, const PatchCo
       add_part(sum, corner_weight(b, push.w, more.x, more.y), push);
     }
     float* const to = memory.force + 3 * b * memory.width + voxel.column;
-    // internal forces have the opposite sign
+    // Internal forces have the opposite sign.
     to[0] -= sum.x;
     to[memory.width] -= sum.y;
     to[2 * memory.width] -= sum.z;
   }
 }
 
-/// Ends the computation of voxels with a barrier; with contact, adds its forces to theirs. `until`: see
-/// ContactWatch.
+/// Ends the computation of voxels with a barrier. With contact, also adds its forces to those of the voxels. `until`:
+/// see ContactWatch.
 template <Effects With>
 __device__ __forceinline__ void end_voxels(const StepArguments& g, const PatchContact& contact,
                                            const ContactWatch& watch, const PatchMemory& memory, int step,
@@ -162,7 +162,7 @@ __device__ __forceinline__ void end_voxels(const StepArguments& g, const PatchCo
 {
   if (!has<With, Effects::contact>)
     return __syncthreads();
-  // all threads have the same answer
+  // The condition has the same value in all threads.
   if (contact.points == 0 || (g.forces_only && !g.contact.spring))
     return __syncthreads();
   if (watch.way > 0 && __syncthreads_or(watch.moved_on) == 0)

@@ -12,12 +12,14 @@ namespace cuda
 {
 
 // A block of threads keeps its patch, including the halo, in shared memory for all steps of a launch. In a step each
-// thread computes a voxel and writes the forces on its corners to shared memory, then updates a node. Between steps
-// only border nodes are exchanged with other blocks. Displacement and step number are written as one 16-byte word, so
-// that a reader waits for exactly the data it needs, without barriers between blocks or fences. Neighbouring patches
-// read each other, so a writer is at most one step ahead of its readers, and two buffers suffice.
+// thread computes a voxel, writes the forces on its corners to shared memory, and then updates a node. Between steps,
+// blocks exchange only border nodes.
+// A displacement and its step number are written as one word of 16 bytes, so that a reader waits for exactly the data
+// that it needs, without fences or barriers between blocks. Two buffers suffice: neighbouring patches read from each
+// other, so that a writer is at most one step ahead of its readers.
 
-/// Step number, stored in place of the inverse mass. Its highest bit is set, which no inverse mass has.
+/// Step number, stored in place of the inverse mass. Its highest bit is set, which distinguishes it from an inverse
+/// mass.
 __device__ __forceinline__ std::uint32_t mark(const StepArguments& g, std::int32_t step)
 {
   return 0x80000000u | (g.steps_before + static_cast<std::uint32_t>(step - g.step_begin));
@@ -46,7 +48,7 @@ __device__ __forceinline__ float4 receive(const float4* from, std::uint32_t mark
   return make_float4(__uint_as_float(word[0]), __uint_as_float(word[1]), __uint_as_float(word[2]), 0);
 }
 
-/// Data of a voxel apart from the displacements of its corners.
+/// Data of a voxel without the displacements of its corners.
 struct VoxelFetch
 {
   uint4 corner;
@@ -104,7 +106,7 @@ __device__ __forceinline__ void put_forces(const StepArguments& g, const VoxelFe
   }
 }
 
-/// Force on a node: the sum over its voxels, in the order of the number that the node has among their corners.
+/// Force on a node: the sum over the voxels of which the node is corner 0, 1, ... 7, in this order.
 __device__ __forceinline__ void sum_forces(const PatchMemory& memory, const uint4& voxels, float (&force)[3])
 {
   std::uint32_t column[8];
@@ -132,7 +134,8 @@ __device__ __forceinline__ std::uint32_t bound_of_node(const StepArguments& g, c
   return frequency_bits_of(g, node, inverse_mass, stiffness);
 }
 
-/// Updates a node. `own`: its number in the block. `last`: in the last step, which writes all to global memory.
+/// Updates a node. `own`: index of the node in the block. `last`: whether this is the last step, which writes all nodes
+/// to global memory.
 template <Effects With>
 __device__ __forceinline__ void step_patch_node(const StepArguments& g, const PatchMemory& memory, std::uint32_t node,
                                                 std::uint32_t own, const StepLaunch& launch, bool on_border, bool last,
@@ -159,7 +162,7 @@ __device__ __forceinline__ void step_patch_node(const StepArguments& g, const Pa
       slide<With>(g, task, { fetch.own, node, step }, fetched, n);
     else if (has<With, Effects::tasks> && task != patch_task::none)
     {
-      // a copy, so that the state of nodes without tasks stays in registers
+      // The copy lets the state of nodes without tasks stay in registers.
       NodeState held = n;
       apply_task<part<With, of_nodes>>(g, g.tasks[patch_task::other - task], fetch.own, step, held);
       n = held;
@@ -180,7 +183,7 @@ __device__ __forceinline__ void step_patch_node(const StepArguments& g, const Pa
     send(next + node, n.u, mark(g, step + 1));
 }
 
-// Set: as in step_kernel.cuh
+// Set is an int for the reason given in step_kernel.cuh.
 template <int Set>
 __global__ void __launch_bounds__(most_patch_threads, 1)
     patch_kernel(const __grid_constant__ StepArguments g, const __grid_constant__ StepLaunch launch)
@@ -192,7 +195,7 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
   const std::uint32_t threads = blockDim.x;
   if (has<With, Effects::fibres>)
     load_activations(g, activations);
-  float until[most_turns];  // with contact: see ContactWatch
+  float until[most_turns];  // with contact: ContactWatch describes it
   std::uint32_t round = 0;
   std::uint32_t filled = 0, kept = 0;
   for (std::uint32_t p = blockIdx.x; p < g.patch_count; p += gridDim.x)
@@ -240,7 +243,7 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
       if (has<With, Effects::shell>)
         shell = fetch_shell(g, launch, memory, p, kept);
       VoxelFetch voxel{};
-      // Voxels with fibres or viscosity come first. Warps in which no voxel has either skip both.
+      // Voxels with fibres or viscosity come first, so that warps without such voxels skip the code for both.
       const auto is_plain = [&](std::uint32_t v) { return With == plain || (v & ~31u) >= patch.special; };
       const auto fetch = [&](std::uint32_t v) {
         return is_plain(v) ? fetch_voxel<plain>(g, patch.voxel_begin + v) : fetch_voxel<With>(g, patch.voxel_begin + v);
@@ -290,7 +293,7 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
   }
 }
 
-/// The patch kernel for a set of effects. `Nodes`: the effects of nodes in it.
+/// The patch kernel for a set of effects. `Nodes`: the set's effects of nodes.
 template <Effects Nodes, int... Voxels>
 const void* patch_kernel_of(Effects effects, std::integer_sequence<int, Voxels...>)
 {
@@ -303,8 +306,8 @@ const void* patch_kernel_of(Effects effects)
   return patch_kernel_of<Nodes>(effects, std::make_integer_sequence<int, voxel_sets>());
 }
 
-/// Kernels are in separate translation units, because nvcc gives every kernel that calls through a table the registers
-/// of the largest function in all tables of the unit.
+/// Kernels are in separate translation units, because nvcc gives every kernel that calls functions through a table the
+/// registers of the largest function in all tables of the unit.
 const void* sliding_patch_kernel(Effects effects);
 const void* friction_patch_kernel(Effects effects);
 const void* contact_patch_kernel(Effects effects);

@@ -8,19 +8,19 @@ namespace frontalis
 namespace cuda
 {
 
-// Shells in patches, whose shared memory they use. A patch computes every triangle that it needs, some of which others
-// compute as well, so that nothing but displacements of nodes is exchanged.
+// Shells in patches. They use part of the patches' shared memory. A patch computes all triangles that it needs, even if
+// other patches compute them as well, so that only displacements of nodes have to be exchanged.
 
 /// The shells of a patch in a step.
 struct ShellStep
 {
   PatchShell patch;
-  const uint4* table;       ///< in shared memory
-  const float4* triangles;  ///< in shared memory too, if there is room
-  std::uint32_t words;      ///< of the table that are in shared memory
+  const uint4* table;       ///< table of the patch, in shared memory
+  const float4* triangles;  ///< in shared memory if there is room, else in global memory
+  std::uint32_t words;      ///< number of words of the table in shared memory
 };
 
-/// `kept`: words in shared memory for the patches before it in the block.
+/// `kept`: number of words in shared memory that belong to the block's patches before this one.
 __device__ __forceinline__ ShellStep fetch_shell(const StepArguments& g, const StepLaunch& launch,
                                                  const PatchMemory& memory, std::uint32_t p, std::uint32_t kept)
 {
@@ -44,7 +44,7 @@ __device__ __forceinline__ std::uint32_t keep_shell(const StepArguments& g, cons
   return shell.words;
 }
 
-/// Places the vertices. A barrier must follow.
+/// Finds the displacements of the vertices. A barrier must follow.
 __device__ __forceinline__ void place_shell(const ShellStep& shell, const PatchMemory& memory)
 {
   for (std::uint32_t v = threadIdx.x; v < shell.patch.vertices; v += blockDim.x)
@@ -63,11 +63,11 @@ __device__ __forceinline__ void place_shell(const ShellStep& shell, const PatchM
 }
 
 /// Adds the forces on vertices to those on the corners of their voxels, in the order of the vertices. Eight threads
-/// have a voxel: they share the sum of the force on a vertex, then each adds its part to a corner.
+/// process a voxel: together they sum the force on a vertex, then each adds its part to a corner.
 __device__ __forceinline__ void add_shell(const StepArguments& g, const ShellStep& shell, const PatchMemory& memory)
 {
   const PatchShell& patch = shell.patch;
-  // all threads have the same answer
+  // The condition has the same value in all threads.
   if (patch.triangles == 0 || (g.forces_only && !g.shell.spring))
     return;
   float* const forces = reinterpret_cast<float*>(memory.shell + patch.vertices);
@@ -99,7 +99,7 @@ __device__ __forceinline__ void add_shell(const StepArguments& g, const ShellSte
       sum = sum + corner_weight(b, at.x, at.y, at.z) * force;
     }
     float* const to = memory.force + 3 * b * memory.width + voxel.x;
-    // internal forces have the opposite sign
+    // Internal forces have the opposite sign.
     to[0] -= sum.x;
     to[memory.width] -= sum.y;
     to[2 * memory.width] -= sum.z;

@@ -5,33 +5,34 @@
 namespace frontalis
 {
 
-/// The part of the shells that a patch computes: vertices in its voxels, on which it needs the forces, all triangles
-/// around them, and the other vertices of these triangles. Vertices in its voxels come first, sorted by voxel. The
-/// table of a patch has words of 16 bytes, in this order:
-/// - for each vertex, its coordinates in its voxel; the bits of the fourth number are the first term of the force on
-///   it, and from bit 20 on the number of terms;
-/// - for each vertex, where shared memory has the corners of its voxel, in 16 bits each;
-/// - for each voxel with vertices, in half a word: its number in the patch; its first vertex, and from bit 16 on their
-///   number;
-/// - for each term, in 16 bits, where the x component of a triangle's force on the vertex is;
+/// The part of the shells that a patch computes: the vertices in its voxels, whose forces it needs, all triangles
+/// around these vertices, and the other vertices of these triangles. The vertices in its voxels come first, sorted by
+/// voxel. The table of a patch has words of 16 bytes, in this order:
+/// - for each vertex, its coordinates in its voxel; a fourth number, whose low 20 bits are the first term of the force
+/// on the vertex and whose other bits are the number of terms;
+/// - for each vertex, indices of the corners of its voxel in shared memory, 16 bits each;
+/// - for each voxel with vertices, in half a word: the voxel's index in the patch; then its first vertex in 16 bits and
+/// its number of vertices in the next 16 bits;
+/// - for each term, in 16 bits, the position of the x component of a triangle's force on the vertex;
 /// - the triangles: see ShellTriangles.
 struct alignas(8) PatchShell
 {
-  std::uint32_t table_begin, table_words;  ///< into ShellArguments::tables; number of words without the triangles
+  /// first word in ShellArguments::tables; number of words without the triangles
+  std::uint32_t table_begin, table_words;
   std::uint32_t vertices, voxels, triangles, unused;
 };
 
 /// Words per triangle: physics::ShellTriangle, the bound of the bending stiffness [N/m], an unused number, the six
-/// vertices, two unused numbers. They are stored as [word][triangle]; forces, as [vertex][component][triangle].
+/// vertices, two unused numbers. Triangles are stored as [word][triangle], forces as [vertex][component][triangle].
 constexpr int shell_words = 10;
 struct ShellTriangles
 {
   const float4* words;
   std::uint32_t count;
-  bool spring;  ///< forces are those of ShellStiffness::add_forces()
+  bool spring;  ///< whether the forces are those of ShellStiffness::add_forces()
 };
 
-/// Layers that are shells, in patches.
+/// Shells in patches. Pointers are to device memory.
 struct ShellArguments
 {
   const PatchShell* patches;  ///< null: shells are not computed

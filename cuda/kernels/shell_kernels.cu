@@ -7,7 +7,7 @@ namespace frontalis
 namespace cuda
 {
 
-// In strips, shells have kernels of their own before each step. Their forces become changes of the nodes' velocities.
+// In strips, shells have kernels of their own, which run before each step. Their forces change the velocities of nodes.
 
 constexpr int block = 128;
 

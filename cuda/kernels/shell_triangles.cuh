@@ -9,7 +9,7 @@ namespace frontalis
 namespace cuda
 {
 
-/// Forces on the vertices of a triangle by a stiffness that is nowhere below that of the triangle, at displacements u.
+/// Forces on the vertices of a triangle at displacements u, by an upper bound of the triangle's stiffness.
 __device__ __forceinline__ void shell_spring_forces(const physics::ShellTriangle<float>& rest, float bending,
                                                     const physics::Vec3<float> (&u)[6],
                                                     physics::Vec3<float> (&force)[6])
@@ -65,7 +65,7 @@ __device__ __forceinline__ void put_shell_forces(const ShellTriangles& all, std:
   }
 }
 
-/// The force of `count` triangles, of which the x component is at `from`.
+/// A triangle's force on one of its vertices, whose x component is at `from`. `count`: number of triangles.
 __device__ __forceinline__ physics::Vec3<float> shell_force(const float* from, std::uint32_t count)
 {
   return { from[0], from[count], from[2 * std::size_t(count)] };

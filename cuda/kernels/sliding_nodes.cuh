@@ -9,7 +9,7 @@ namespace frontalis
 namespace cuda
 {
 
-// Nodes that slide on surfaces. In each step a node uses the tangent plane of its field's level set at its position.
+// Nodes that slide on surfaces. In each step a node uses the tangent plane of its level set at its present position.
 
 struct NodeState
 {
@@ -17,7 +17,7 @@ struct NodeState
   float v[3];
 };
 
-/// A node in a step. `before`: displacement before the step, and inverse mass.
+/// A node in a step. `before`: its displacement before the step, and its inverse mass.
 struct NodeStep
 {
   float4 before;
@@ -25,7 +25,8 @@ struct NodeStep
   int step;
 };
 
-/// Data of a sliding node, read before the step. Its samples would take too many registers and are read when needed.
+/// Data of a sliding node that is read before the step. The node's samples would take too many registers and are read
+/// when they are needed.
 struct SlidingFetch
 {
   float4 at, plane;
@@ -35,7 +36,6 @@ struct SlidingFetch
 
 __device__ __forceinline__ physics::Vec3<float> normal_of(const float4& plane) { return { plane.x, plane.y, plane.z }; }
 
-/// Whether a sliding node has friction.
 __device__ __forceinline__ bool rubs(const StepArguments& g, std::int32_t index)
 {
   return static_cast<std::uint32_t>(index) < g.rubbing_count;
@@ -59,7 +59,8 @@ __device__ __forceinline__ void fetch_sliding(const StepArguments& g, std::int32
   }
 }
 
-/// Copies the samples of another cell to a node. Returns false, and copies nothing, if none are stored there.
+/// Copies the samples of another cell to a node's own copy. Returns false, and copies nothing, if the cell has no
+/// samples.
 static __device__ __noinline__ bool enter_cell(const StepArguments& g, std::int32_t index, std::uint32_t code)
 {
   const SlidingNodeField node = g.sliding[index];
@@ -69,8 +70,8 @@ static __device__ __noinline__ bool enter_cell(const StepArguments& g, std::int3
   return true;
 }
 
-/// Field of a node's surface at the node's displacement `u`, minus the node's level. Returns false if no samples are
-/// stored there.
+/// Finds the field of a node's surface at the node's displacement `u`, minus the node's level. Returns false if no
+/// samples are stored there.
 __device__ __forceinline__ bool field_at(const StepArguments& g, std::int32_t index, const SlidingFetch& fetch,
                                          const physics::Vec3<float>& u, physics::FieldValue<float>& value)
 {
@@ -85,7 +86,8 @@ __device__ __forceinline__ bool field_at(const StepArguments& g, std::int32_t in
                        [&](std::uint32_t code) { return aside(enter_cell)(g, index, code); });
 }
 
-/// The plane on which a node at displacement `u` slides in this step; without samples there, that of the latest step.
+/// The plane on which a node at displacement `u` slides in this step. Where no samples are stored, the plane of the
+/// latest step is kept.
 __device__ __forceinline__ physics::LevelPlane<float> plane_at(const StepArguments& g, std::int32_t index,
                                                                const SlidingFetch& fetch, const physics::Vec3<float>& u)
 {
@@ -98,8 +100,8 @@ __device__ __forceinline__ physics::LevelPlane<float> plane_at(const StepArgumen
   return plane;
 }
 
-/// Slides a node with position p and velocity v relative to its surface on a plane in the surface's frame. Returns
-/// whether it has friction. T: number type of the step.
+/// Slides a node on a plane. The plane, and the node's position p and velocity v, are in the surface's frame. Returns
+/// whether the node has friction. T: number type of the step.
 template <Effects With, class T>
 __device__ __forceinline__ bool slide_on(const StepArguments& g, std::int32_t index, const SlidingFetch& fetch,
                                          const physics::LevelPlane<float>& plane, physics::Vec3<T>& p,
@@ -131,7 +133,7 @@ static __device__ __forceinline__ void account_friction(const StepArguments& g, 
   g.friction_work[index] += physics::friction_work(normal, surface_velocity, old, free, v) / double(at.before.w);
 }
 
-/// Step of a node that slides on a still surface.
+/// Step of a node that slides on a surface that stands still.
 template <Effects With>
 __device__ __forceinline__ void slide(const StepArguments& g, std::int32_t index, const NodeStep& at,
                                       const SlidingFetch& fetch, NodeState& n)
@@ -153,7 +155,7 @@ static __device__ __noinline__ void keep_distance(const StepArguments& g, std::i
   slide<With>(g, index, at, fetch, n);
 }
 
-/// Step of a node that slides on a surface moving with a bone. Only the plane is in single precision, so that
+/// Step of a node that slides on a surface that moves with a bone. Only the plane is in single precision, so that
 /// conversions between the frames do not move a node at rest.
 template <Effects With>
 static __device__ __noinline__ void glide(const StepArguments& g, std::int32_t index, const NodeStep& at, NodeState& n)

@@ -9,8 +9,8 @@ namespace frontalis
 namespace cuda
 {
 
-// One warp per strip. WithBound: whether stiffness bounds are computed, which takes registers and so has kernels of its
-// own. Set is an int, because nvcc cannot name a combination of enumerators.
+// Each warp processes one strip. WithBound: whether stiffness bounds are computed. They take registers, and therefore
+// have kernels of their own. Set is an int, because nvcc cannot name a combination of enumerators.
 template <int Rows, bool WithBound, int Set>
 __global__ void __launch_bounds__(step_block, strip_blocks(static_cast<Effects>(Set)))
     step_kernel(const __grid_constant__ StepArguments g)
@@ -55,7 +55,7 @@ __global__ void __launch_bounds__(step_block, strip_blocks(static_cast<Effects>(
 
 using StepKernel = void (*)(StepArguments);
 
-/// The strip kernel with the effects of voxels from `effects` and the effects of nodes from `Nodes`.
+/// The strip kernel with the effects of voxels in `effects` and the effects of nodes in `Nodes`.
 template <Effects Nodes, bool WithBound, int... Voxels>
 StepKernel step_kernel_of(Effects effects, std::integer_sequence<int, Voxels...>)
 {

@@ -19,7 +19,7 @@ namespace frontalis
 enum NodeEffect : std::uint8_t
 {
   node_load,        ///< index into StepArguments::load_begin
-  node_sliding,     ///< on a still surface; index into StepArguments::sliding
+  node_sliding,     ///< on a surface that stands still; index into StepArguments::sliding
   node_gliding,     ///< on a surface that moves with a bone; index into StepArguments::gliding
   node_prescribed,  ///< index into StepArguments::prescribed
   node_rigid,       ///< index into StepArguments::rigid
@@ -41,11 +41,11 @@ __host__ __device__ inline bool slides_only(const NodeTask& task)
          (task.of[node_load] & task.of[node_gliding] & task.of[node_prescribed] & task.of[node_rigid]) < 0;
 }
 
-/// The contribution of a surface vertex's force to a node.
+/// The part of a surface vertex's force that acts on a node.
 struct LoadPart
 {
   std::int32_t vertex;  ///< index into StepArguments::vertex_force
-  std::int32_t load;    ///< load whose ramp it follows
+  std::int32_t load;    ///< index of the load whose ramp the part follows
   float weight;
 };
 
@@ -66,22 +66,22 @@ struct RigidMotion
 struct SlidingNodeField
 {
   std::int32_t surface;  ///< index into StepArguments::fields
-  std::int32_t cell[3];  ///< cell of its rest position
-  float level;           ///< value of the field that it keeps [m]
+  std::int32_t cell[3];  ///< cell of the node's rest position
+  float level;           ///< value of the field at which the node stays [m]
 };
 
 /// A sliding node's copy of the field near its position, in words of 16 bytes at a stride of `sliding_count`: the
-/// samples of a cell minus the level [m], and the inverse of their spacing [1/m]. On a sphere the inverse spacing is 0,
-/// and the first entry is the distance at rest minus the level [m]. Points of contact have such copies as well, at a
-/// stride of their number, with the code of the cell as the last entry.
+/// samples of a cell minus the level [m], and 1 over their spacing [1/m]. On a sphere the inverse spacing is 0, and the
+/// first entry is the distance at rest minus the level [m]. Points of contact have such copies as well, with their
+/// number as the stride and the code of the cell as the last entry.
 constexpr int sample_words = 7;
 
-/// The cell of a node's samples: 10 bits per axis, counted from `middle_cell`, which is the cell of the rest position.
-/// A node farther away is past its field's rim. no_cell: there are no samples yet.
+/// Code of the cell of a node's samples: 10 bits per axis, counted from `middle_cell`, which is the cell of the rest
+/// position. A node outside of that range is past its field's rim. no_cell: no samples are stored yet.
 constexpr std::int32_t middle_cell = 512;
 constexpr std::uint32_t no_cell = 0xffffffffu;
 
-/// A node on a surface that moves with a bone. Its field and plane are in the frame of the bone.
+/// A node on a surface that moves with a bone. The node's field and plane are in the frame of the bone.
 struct GlidingNode
 {
   double rest[3];  ///< [m]
@@ -93,78 +93,87 @@ struct GlidingNode
 struct LawEntry
 {
   std::int32_t law;
-  float weight;                                ///< fraction times tissue volume [m3]
+  float weight;                                ///< fraction of the voxel's tissue, times tissue volume [m3]
   float per_tangent;                           ///< LawPart::per_tangent [m]
   float at_rest;                               ///< tangent stiffness at rest [Pa]
-  float parameters[physics::parameter_slots];  ///< order: physics/materials/description.hpp
+  float parameters[physics::parameter_slots];  ///< ordered as in physics/materials/description.hpp
 };
 
 /// Arguments of a launch that makes steps of equal length or computes internal forces. Pointers are to device memory.
 struct StepArguments : physics::Kick<float>
 {
-  // the partition: patches or strips
+  // The partition into patches or strips:
   const Patch* patches;
   std::uint32_t patch_count;
   const uint4* patch_corners;       ///< VoxelPatches::corner
-  const uint2* patch_properties;    ///< per voxel of a patch: palette entry, fibre word
+  const uint2* patch_properties;    ///< per voxel of a patch: palette entry and fibre word
   const std::uint32_t* halo;        ///< VoxelPatches::halo
   const uint4* node_voxels;         ///< VoxelPatches::node_voxel
   const std::int32_t* patch_tasks;  ///< per device node: see patch_task
   const Strip* strips;
-  const uint2* slots;  ///< StripSlot: node and palette entry
+  const uint2* slots;  ///< per StripSlot: node and palette entry
   std::uint32_t strip_count;
-  float4* u[2];           ///< displacement [m] and inverse mass [1/kg], 0 of still nodes; u[first] is current
-  float* v[3];            ///< velocity [m/s]
-  const float* mobility;  ///< inverse mass [1/kg], 0 for held nodes; null: that of u
+  /// displacement [m] and inverse mass [1/kg], 0 for nodes that never move; u[first] is the present one
+  float4* u[2];
+  float* v[3];  ///< velocity [m/s]
+  /// inverse mass for the frequency bound [1/kg], 0 for held nodes; null: the inverse mass in u
+  const float* mobility;
   std::int32_t first;
 
-  // Materials of voxels: shear and bulk modulus times tissue volume [N m], hourglass stiffness [N/m], bound of the
-  // largest eigenvalue of the stiffness at rest [N/m]. Entry 0 has no stiffness.
+  // Palette of materials of voxels. Each entry has shear and bulk modulus times tissue volume [N m], hourglass
+  // stiffness [N/m], and the bound of the largest eigenvalue of the stiffness at rest [N/m]. Entry 0 has no stiffness.
   const float4* palette;
   const float4* stabilisation;     ///< bending, coupling, torsion, warping [N m]; null: scalar hourglass control
-  const std::uint32_t* law_begin;  ///< laws other than neo-Hookean of each palette entry; null if there are none
+  const std::uint32_t* law_begin;  ///< first law other than neo-Hookean of each palette entry; null if there are none
   const LawEntry* laws;
-  bool selective_reduced;              ///< isochoric stress at eight points
-  const std::uint32_t* viscous_words;  ///< 1 + viscous voxel or 0, laid out as slots or patch_properties; null if none
-  float* relaxed;  ///< [term, then their sum if there are two][component][viscous voxel] times tissue volume [N m]
+  bool selective_reduced;  ///< whether the isochoric stress is taken at eight Gauss points
+  /// 1 + index of the viscous voxel, or 0; in the order of slots or patch_properties; null: none
+  const std::uint32_t* viscous_words;
+  /// relaxed stress times tissue volume [N m] as [term][component][viscous voxel]; two terms are followed by their sum
+  float* relaxed;
   const float4* viscous_properties;  ///< of each viscous voxel: fractions of its two terms, then their rates [1/s]
   std::uint32_t viscous_count;
   std::int32_t viscous_terms;
-  const float* relaxation;  ///< per step, time by which viscous stresses relax before it [s]; null: they do not relax
+  /// per step, time by which viscous stresses relax before the step [s]; null: they do not relax
+  const float* relaxation;
   const std::uint32_t* fibre_words;
-  const float4* fibres;               ///< direction, and weight times tissue volume times stress reference [N m]
-  const std::uint32_t* fibre_muscle;  ///< muscle, bit 31: passive part, bit 30: tension-length relation
+  const float4* fibres;  ///< direction, and weight times tissue volume times stress reference [N m]
+  /// index of the muscle; bit 31: has a passive part; bit 30: has the tension-length relation
+  const std::uint32_t* fibre_muscle;
   std::int32_t muscles;
   const float* activation_begin;
   const float* activation_end;
 
-  // Restricted and loaded nodes.
+  // Restricted and loaded nodes:
   const NodeTask* tasks;
   const LoadPart* load_parts;
   const std::int32_t* load_begin;
   const double* vertex_force;  ///< three per vertex, at the end of the ramp [N]
   const double* load_ramp;     ///< one per load [s]
   const double* load_relief;   ///< three per loaded node: correction of gravity for scaled mass [N]; or null
-  // Sliding nodes, on still and on moving surfaces, those with friction first. Samples depend only on a node's
-  // position; planes and `pressing` are state.
+  // Sliding nodes, on surfaces that stand still and on moving ones; those with friction come first. Samples depend on a
+  // node's position only; planes and `pressing` are state.
   const physics::DistanceField* fields;
   const SlidingNodeField* sliding;
   std::uint32_t sliding_count;
-  float4* sliding_at;     ///< offset of the rest position in its cell [m], or from a sphere's centre; bits of the cell
-  float4* samples;        ///< see sample_words
-  float4* planes;         ///< tangent planes of the latest step, normal . u = offset: normal and offset; 0: none yet
-  const float* friction;  ///< coefficient, of the first `rubbing_count` nodes
-  float* pressing;        ///< their reaction per mass with the delay of friction [m/s2]
+  /// offset of the rest position in its cell, or from a sphere's centre [m]; bits of the cell's code
+  float4* sliding_at;
+  float4* samples;  ///< see sample_words
+  /// tangent planes of the latest step, normal . u = offset: normal and offset; a zero normal: none yet
+  float4* planes;
+  const float* friction;  ///< Coulomb's coefficient of the first `rubbing_count` nodes
+  float* pressing;        ///< reaction per mass of these nodes, with the delay of friction [m/s2]
   std::uint32_t rubbing_count;
   const GlidingNode* gliding;
   const PrescribedMotion* prescribed;
   const RigidMotion* rigid;
-  const double* poses;  ///< [step][bone][12]: rotation by rows, translation; before the first step, then after each
+  /// [step][bone][12]: rotation by rows and translation, before the first step and then after each step
+  const double* poses;
   std::int32_t bones;
 
   float scale[3];             ///< 1 / (4 h)
-  float stretch_weight[3];    ///< 1/h^2 over the sum of the three
-  float stretch_half_sum;     ///< half of that sum [1/m2]
+  float stretch_weight[3];    ///< 1/h^2 divided by the sum over the three axes
+  float stretch_half_sum;     ///< half of that sum over the axes [1/m2]
   float hourglass_weight[3];  ///< 1 / (4 sqrt(3) h)
   float dt;
   double time, dt_exact;
@@ -172,32 +181,33 @@ struct StepArguments : physics::Kick<float>
   double kick;                               ///< time over which forces change velocities in each of these steps [s]
   std::int32_t step_begin, step_end, steps;  ///< this launch makes steps [step_begin, step_end) of the plan
   std::uint32_t* frequency_bound;            ///< bits of the squared frequency bound at the plan's last step
-  bool bound_every_step;                     ///< computes the bound at all steps of the plan
-  bool forces_only;                          ///< writes internal forces to u[1 - first] and updates nothing
-  float* velocity_before[3];                 ///< velocities before the update; null without an account of work
-  float* velocity_free[3];                   ///< velocities after the update and the loads, before constraints
-  double* friction_work;                     ///< dissipated energy [J] of nodes with friction; or null
-  std::uint32_t steps_before;                ///< number of steps in earlier launches of this solver
-  ContactArguments contact;                  ///< contact with bodies
+  bool bound_every_step;                     ///< whether the bound is computed in all steps of the plan
+  bool forces_only;            ///< whether the launch only writes internal forces to u[1 - first] and updates nothing
+  float* velocity_before[3];   ///< velocities before the update; null without an account of work
+  float* velocity_free[3];     ///< velocities after the update and the loads, before constraints
+  double* friction_work;       ///< energy dissipated at nodes with friction [J]; or null
+  std::uint32_t steps_before;  ///< number of steps in earlier launches of this solver
+  ContactArguments contact;    ///< contact with bodies
   ShellArguments shell;
 };
 
 /// Threads per block of the strip kernel. Each warp processes one strip.
 constexpr int step_block = 128;
 
-/// Planes of slots that a warp loads beyond the end of its strip.
+/// Number of planes of slots that a warp loads beyond the end of its strip.
 constexpr std::uint32_t planes_ahead = 2;
 
-/// Most threads per block of the patch kernel.
+/// Largest number of threads per block of the patch kernel.
 constexpr std::uint32_t most_patch_threads = 512;
-/// Most patches that a block processes in turn.
+/// Largest number of patches that a block processes in turn.
 constexpr int most_turns = 8;
 
-/// Most muscles that a model may have on the GPU, because their activations are stored in shared memory.
+/// Largest number of muscles of a model on the GPU. It is limited, because activations are stored in shared memory.
 constexpr int most_muscles = 512;
 
-/// Entries of patch_tasks. 0 or more: the node slides on a still surface, as its only effect, and this is its index
-/// into StepArguments::sliding. none: no effect. still: the node never moves. other - i: the node has NodeTask i.
+/// Entries of patch_tasks. An entry of at least 0 is an index into StepArguments::sliding: the node slides on a surface
+/// that stands still and has no other effect. none: the node has no effect. still: the node never moves. other - i: the
+/// node has NodeTask i.
 namespace patch_task
 {
 constexpr std::int32_t none = -1;
@@ -206,69 +216,68 @@ constexpr std::int32_t still = -0x7fffffff;
 }  // namespace patch_task
 
 /// Effects that a kernel computes. There is one kernel per set of effects, so that an effect that a model lacks takes
-/// neither registers nor instructions. Effects that few nodes have are called through a table (node_tasks.cuh).
+/// neither registers nor instructions. Effects of few nodes are called through a table (node_tasks.cuh).
 enum class Effects : std::uint8_t
 {
   none = 0,  ///< neo-Hookean with scalar hourglass control
   fibres = 1,
   viscosity = 2,
-  general_element = 4,  ///< other laws, hourglass controls and integrations
+  general_element = 4,  ///< laws, hourglass controls and integrations other than those of `none`
   sliding = 8,          ///< nodes that slide on surfaces
-  tasks = 16,           ///< effects in node_tasks.cuh; always set with sliding
-  friction = 32,        ///< of sliding nodes
-  contact = 64,         ///< with bodies, in patches; always set with all effects of nodes
-  shell = 128           ///< layers that are shells, in patches; always set with contact
+  tasks = 16,           ///< effects in node_tasks.cuh; always set together with sliding
+  friction = 32,        ///< friction of sliding nodes
+  contact = 64,         ///< contact with bodies, in patches; always set together with all effects of nodes
+  shell = 128           ///< layers that are shells, in patches; always set together with contact
 };
 constexpr int voxel_sets = 8;  ///< number of sets of voxel effects, which are the first three bits
 constexpr Effects operator|(Effects a, Effects b) { return static_cast<Effects>(int(a) | int(b)); }
 constexpr Effects operator&(Effects a, Effects b) { return static_cast<Effects>(int(a) & int(b)); }
-// sets as template variables, because device code cannot call the constexpr functions above
+// Sets are template variables, because device code cannot call the constexpr functions above.
 template <Effects Set, Effects Part>
 inline constexpr bool has = (Set & Part) == Part;
 template <Effects Set, Effects Of>
 inline constexpr Effects part = Set& Of;
 inline constexpr Effects of_nodes = Effects::sliding | Effects::tasks | Effects::friction;
-/// The effects of a set that a voxel without fibres and viscosity may have, with the set's effects of nodes.
+/// The effects of nodes in a set, and the effects of voxels in it that a voxel without fibres and viscosity may have.
 template <Effects Set>
 inline constexpr Effects plain_part = Set&(Effects::general_element | of_nodes | Effects::contact | Effects::shell);
-/// Effects of voxels in a set.
 constexpr Effects voxel_part(Effects set)
 {
   return set & (Effects::fibres | Effects::viscosity | Effects::general_element);
 }
 
-/// What a patch needs in shared memory for effects with points that are bound to voxels.
+/// Shared memory that a patch needs for effects with points that are bound to voxels.
 struct PatchRoom
 {
   std::uint32_t contact_points;
-  // words of 16 bytes
+  // The following members count words of 16 bytes.
   std::uint32_t shell_words;  ///< displacements of vertices, and forces of triangles
-  std::uint32_t table_words;  ///< tables of shells of all patches of a block
-  bool keeps_triangles;       ///< whether these have the triangles too
+  std::uint32_t table_words;  ///< tables of shells, of all patches of a block
+  bool keeps_triangles;       ///< whether the tables include the triangles
 };
 
 /// How the step kernel is launched for a model.
 struct StepLaunch
 {
-  bool patches;  ///< one block per patch and many steps per launch, else one warp per strip
+  bool patches;  ///< true: one block per patch and many steps per launch; false: one warp per strip
   Effects effects;
   int blocks, threads;
-  std::uint32_t most_voxels, most_halo, most_nodes;  ///< see VoxelPatches
+  std::uint32_t most_voxels, most_halo, most_nodes;  ///< as in VoxelPatches
   std::size_t shared_bytes;                          ///< per block
-  PatchRoom room;                                    ///< of a patch, for points of contact and shells
+  PatchRoom room;                                    ///< shared memory of a patch for points of contact and shells
 };
 
 /// Rows of voxels in a strip, and blocks of the strip kernel per multiprocessor. More rows share more nodes but take
-/// more registers: with three rows a multiprocessor holds 16 warps, with four only 12. Effects other than neo-Hookean
-/// elasticity leave registers for two rows.
+/// more registers: a multiprocessor holds 16 warps with three rows but only 12 with four. Effects other than
+/// neo-Hookean elasticity leave registers for two rows only.
 constexpr int strip_rows(Effects effects) { return voxel_part(effects) == Effects::none ? 3 : 2; }
 constexpr int strip_blocks(Effects effects)
 {
   return (effects & (Effects::viscosity | Effects::general_element)) == Effects::none ? 4 : 3;
 }
 
-/// Shared memory of a block [bytes]: displacements of halo and own nodes, velocities of own nodes, forces on the
-/// corners of voxels and their stiffness bounds, points of contact, shells.
+/// Shared memory of a block [bytes]. It holds displacements of halo and own nodes, velocities of own nodes, forces on
+/// the corners of voxels and their stiffness bounds, points of contact, and shells.
 constexpr std::size_t patch_bytes(std::size_t most_voxels, std::size_t most_halo, std::size_t most_nodes,
                                   const PatchRoom& room = {})
 {
@@ -278,7 +287,8 @@ constexpr std::size_t patch_bytes(std::size_t most_voxels, std::size_t most_halo
          3 * sizeof(float) * most_nodes + 25 * sizeof(float) * (most_voxels + 1);
 }
 
-/// Number of blocks of the patch kernel that the device runs at once; 0 if it has no code for the device.
+/// Number of blocks of the patch kernel that the device runs at the same time; 0 if the build has no code for the
+/// device.
 int resident_blocks(const StepLaunch& launch);
 
 /// Launches steps [step_begin, step_end) of the plan. Only patches can run several steps per launch.

@@ -15,8 +15,8 @@ struct RowValues
   float difference[3];
 };
 
-/// The displacement of a node. The fourth word of the float4 is not loaded: the compiler would reuse its unread
-/// register at once, and the next instruction would have to wait for the load.
+/// The displacement of a node. The fourth number of the float4 is not loaded, because the compiler would reuse its
+/// unread register at once, and the next instruction would have to wait for the load.
 struct Displacement
 {
   float2 xy;
@@ -43,7 +43,7 @@ __device__ __forceinline__ RowValues transform_x(const Displacement& u)
   return row;
 }
 
-/// Forces on a row of nodes before the transposed x step: [component][sum, difference].
+/// Forces on a row of nodes before the transposed x step of the Walsh-Hadamard transform: [component][sum, difference].
 struct RowForces
 {
   float part[3][2];
@@ -61,8 +61,8 @@ __device__ __forceinline__ void add(RowForces& to, const RowForces& from)
   }
 }
 
-/// Forces of the voxel between rows a and b of the lower and upper planes of nodes: y and z steps of the transform,
-/// forces on the modes, transposed z and y steps.
+/// Forces of the voxel between rows a and b of the lower and upper planes of nodes: the y and z steps of the transform,
+/// the forces on the modes, and the transposed z and y steps.
 template <Effects With>
 __device__ __forceinline__ void voxel_forces(const StepArguments& g, const ElementPlace& place,
                                              const Activations& activation, const RowValues& below_a,
@@ -101,19 +101,19 @@ __device__ __forceinline__ void voxel_forces(const StepArguments& g, const Eleme
     }
 }
 
-/// Transposed x step of the transform: the forces on the nodes of a row.
+/// Transposed x step of the Walsh-Hadamard transform: the forces on the nodes of a row.
 __device__ __forceinline__ void transform_x_transposed(const RowForces& row, int left, float (&force)[3])
 {
 #pragma unroll
   for (int c = 0; c < 3; ++c)
   {
-    // the first lane gets the value of the last one, which never holds a voxel
+    // The first lane gets the value of the last lane, which is 0 because that lane never has a voxel.
     const float from_left = __shfl_sync(whole_warp, row.part[c][0] + row.part[c][1], left);
     force[c] = row.part[c][0] - row.part[c][1] + from_left;
   }
 }
 
-/// Applies the transposed x step, then updates the node or stores its force.
+/// Applies the transposed x step of the transform, then updates the node or stores its force.
 __device__ __forceinline__ void step_node(const StepArguments& g, float4* next, std::uint32_t word, int left,
                                           const NodeFetch& fetch, const RowForces& row)
 {
@@ -135,11 +135,11 @@ __device__ __forceinline__ void step_node(const StepArguments& g, float4* next, 
   }
 }
 
-/// Walks a strip along z. The force on a node is summed in a fixed order: voxels below it before those above, rows in
-/// order, right before left. No other strip adds to it, because both strips compute the voxels on their border. To hide
-/// memory latency, slots are loaded two planes ahead, displacements and fibre words one row ahead; loads beyond the end
-/// of a strip read slots of the next strip, or padding. slot, fibre_word, viscous_word: those of this lane; null if the
-/// strip has none.
+/// Walks through a strip along z. The force on a node is summed in a fixed order: voxels below the node before those
+/// above, rows in order, right before left. No other strip adds to this force, because voxels on the border are
+/// computed by the strips on both sides. To hide memory latency, slots are loaded two planes ahead, displacements and
+/// fibre words one row ahead; loads beyond the end of a strip read slots of the next strip, or padding. slot,
+/// fibre_word, viscous_word: those of this lane; null if the strip has none.
 template <int Rows, Effects With>
 __device__ __forceinline__ void sweep_strip(const StepArguments& g, const Strip& strip, const uint2* slot,
                                             const std::uint32_t* fibre_word, const std::uint32_t* viscous_word,
@@ -215,7 +215,7 @@ __device__ __forceinline__ void sweep_strip(const StepArguments& g, const Strip&
         voxel_forces<With>(g, place, activation, below[r], below[r + 1], above_a, above_b, with_bound, stiffness,
                            force);
       }
-      // a voxel adds the same stiffness to each of its nodes
+      // A voxel adds the same stiffness to each of its nodes.
       if (with_bound && r > 0)
       {
         const float pair = pending_stiffness + stiffness, right = carried_stiffness[r - 1] + pair;

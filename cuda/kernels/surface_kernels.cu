@@ -34,7 +34,7 @@ __device__ physics::Vec3<Real> vertex(const Real* positions, int v)
   return { positions[3 * v], positions[3 * v + 1], positions[3 * v + 2] };
 }
 
-// Sum of twice the area vectors of the triangles around a vertex, in a fixed order.
+// Twice the sum of the area vectors of the triangles around a vertex, in a fixed order.
 template <class Real>
 __device__ physics::Vec3<Real> area_around(const BoundSurface& s, const Real* positions, std::uint32_t v)
 {

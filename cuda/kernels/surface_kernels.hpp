@@ -16,7 +16,7 @@ struct BoundSurface
   const float* coordinates;    ///< three per vertex, within its voxel
   const double* rest;          ///< three per vertex [m]
   const int3* triangles;
-  const std::int32_t* around_begin;  ///< triangles around vertex v, ascending: around[around_begin[v]] ..
+  const std::int32_t* around_begin;  ///< the triangles around vertex v, ascending, begin at around[around_begin[v]]
   const std::int32_t* around;
 };
 

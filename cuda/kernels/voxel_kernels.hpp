@@ -34,7 +34,7 @@ struct FibreVoxels
   double* work;    ///< work of the fibres of each voxel [J]
 };
 
-/// Work done on nodes in a step.
+/// Memory for the work that is done on nodes in a step.
 struct NodeAccount
 {
   std::uint32_t nodes;
@@ -47,24 +47,25 @@ struct NodeAccount
 };
 
 /// Relaxes viscous stresses by `elapsed` [s] towards those at displacements `u` (physics/viscosity.hpp). `u_before`:
-/// one step earlier, needed only for the account of energies.
+/// displacements one step earlier, needed only for the account of energies.
 cudaError_t launch_relaxation(const StepArguments& arguments, const ViscousVoxels& viscous, const float4* u,
                               const float4* u_before, float elapsed, cudaStream_t stream);
-/// Adds the work of fibres since the latest call, with the activations of a step. `open`: starts the account.
+/// Adds the work of fibres since the previous call, with the activations of a step. `open`: starts the account.
 cudaError_t launch_fibre_work(const StepArguments& arguments, const FibreVoxels& fibres, const float4* u, int step,
                               bool open, cudaStream_t stream);
 /// Adds the work on nodes in the latest step (physics/element/node_motion.hpp).
 cudaError_t launch_node_account(const StepArguments& arguments, const NodeAccount& account, double damping, int step,
                                 cudaStream_t stream);
 
-/// out = u + amount * mode / sqrt(mass). Held nodes stay (StepArguments::mobility).
+/// out = u + amount * mode / sqrt(mass). Held nodes do not move (StepArguments::mobility).
 cudaError_t launch_displace(std::uint32_t nodes, const float* mobility, const float4* u, const float4* mode,
                             float amount, float4* out, cudaStream_t stream);
 
-/// Blocks of launch_product(). Each stores the largest component over the root of the mass, and a sum of squares.
+/// Number of blocks of launch_product(). Each stores the largest component divided by the root of the mass, and a sum
+/// of squares.
 constexpr int product_blocks = 128;
 
-/// mode = (forces - present) * factor / sqrt(mass), 0 at held nodes. `seen`: receives the two numbers of each block.
+/// mode = (forces - present) * factor / sqrt(mass), and 0 at held nodes. `seen`: receives two numbers per block.
 cudaError_t launch_product(std::uint32_t nodes, const float* mobility, const float4* u, const float4* forces,
                            const float4* present, float factor, float4* mode, double2* seen, cudaStream_t stream);
 

@@ -13,8 +13,8 @@ namespace frontalis
 namespace
 {
 
-// Costs relative to a voxel without effects, measured on blocks in which all voxels or none have the effect; that of
-// nodes that slide on moving bones, on the generated head, whose steps are shortest so.
+// Costs relative to a voxel without effects. They were measured on blocks in which all voxels or none have the effect.
+// The cost of nodes that slide on moving bones was chosen for the shortest steps of the generated head.
 constexpr float fibre_cost = 0.4f, viscous_cost = 0.45f, node_cost = 0.8f, glide_cost = 5;
 
 std::int32_t fibres_of(const Model& model, std::size_t e) { return model.fibre_begin[e + 1] - model.fibre_begin[e]; }
@@ -59,7 +59,7 @@ private:
   {
     int axis = 0;
     std::int32_t at = 0;
-    double before = 0;  // weight of the nodes before it
+    double before = 0;  // weight of the nodes before the plane
     std::size_t section = 0;
   };
 
@@ -105,7 +105,7 @@ private:
     const auto coordinate = [&](std::uint32_t n) { return model_.nodes[n][plane.axis]; };
     const auto begin = order_.begin() + static_cast<std::ptrdiff_t>(first),
                end = order_.begin() + static_cast<std::ptrdiff_t>(last);
-    // keep the nodes of the plane in the model's order, so that a cut within the plane runs along a row
+    // The nodes of the plane stay in the model's order, so that a cut within the plane runs along a row.
     const auto within = std::stable_partition(begin, end, [&](std::uint32_t n) { return coordinate(n) < plane.at; });
     const auto after = std::stable_partition(within, end, [&](std::uint32_t n) { return coordinate(n) == plane.at; });
     auto middle = within;
@@ -138,7 +138,8 @@ void each_part(const Model& model, const std::vector<std::uint32_t>& part_of, co
   }
 }
 
-// Divides the model into parts of about equal cost. Iterates, because shared voxels, and the cost, depend on the cut.
+// Divides the model into parts of about equal cost. Iterates, because shared voxels, and thus the cost, depend on the
+// cut.
 std::vector<std::uint32_t> partition(const Model& model, const BoundWork& bound, int parts)
 {
   const std::vector<float> of_voxel = voxel_costs(model, bound), of_node = node_costs(model);
@@ -169,8 +170,8 @@ std::vector<std::uint32_t> partition(const Model& model, const BoundWork& bound,
   return best;
 }
 
-// Class of each node: 2 if it only slides on a still surface, 1 if it has other effects, else 0. Nodes of a class get
-// contiguous numbers, because a warp takes as long for one node with effects as for 32.
+// Class of each node: 2 if it only slides on a surface that stands still, 1 if it has other effects, else 0. The nodes
+// of a class have contiguous numbers, because a warp takes as long for one node with effects as for 32.
 std::vector<char> busy_nodes(const Model& model)
 {
   std::vector<char> busy(model.nodes.size(), 0);
@@ -193,7 +194,7 @@ VoxelPatches::VoxelPatches(const Model& model, const PatchSettings& settings, co
   std::vector<std::vector<std::uint32_t>> nodes_of(parts), voxels_of(parts);
   std::vector<char> on_border(model.nodes.size(), 0);
   each_part(model, part_of, [&](std::uint32_t part, std::uint32_t e) { voxels_of[part].push_back(e); });
-  // model nodes, then device nodes
+  // First model nodes, later device nodes.
   std::vector<std::vector<std::uint32_t>> halo_of(parts);
   for (int p = 0; p < parts; ++p)
   {
@@ -228,7 +229,7 @@ VoxelPatches::VoxelPatches(const Model& model, const PatchSettings& settings, co
     most_voxels = std::max(most_voxels, static_cast<std::uint32_t>(voxels_of[p].size()));
   }
 
-  // halos are sorted by device node, so that neighbouring threads read neighbouring nodes
+  // Halos are sorted by device node, so that neighbouring threads read neighbouring nodes.
   for (int p = 0; p < parts; ++p)
   {
     auto& nodes = halo_of[p];
@@ -262,7 +263,7 @@ VoxelPatches::VoxelPatches(const Model& model, const PatchSettings& settings, co
     filled[p % settings.blocks] += patch.nodes;
     most_nodes = std::max(most_nodes, filled[p % settings.blocks]);
   }
-  // indices have 16 bits: the caller tries smaller patches, or strips
+  // Indices have 16 bits. If they do not suffice, the caller tries smaller patches, or strips.
   fits_indices = most_halo + most_nodes <= 65535 && most_voxels < 65535;
 }
 

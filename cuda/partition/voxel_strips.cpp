@@ -13,12 +13,12 @@ namespace
 {
 
 constexpr int lanes = 32;
-// Additional cost of a plane with fibres, in units of a plane without. (The most expensive strips start first.)
+// Additional cost of a plane with fibres, in units of a plane without fibres. The most expensive strips start first.
 constexpr double fibres_cost = 0.7;
 
 using Cell = std::array<std::int32_t, 3>;
 
-// Index of the start of each row (j,k) in a list sorted by k, j, i.
+// Index of the first entry of each row (j,k) in a list that is sorted by k, j, i.
 class RowIndex
 {
 public:
@@ -53,14 +53,14 @@ private:
   std::vector<std::uint32_t> begin_;
 };
 
-// Consecutive columns in x of one tile (rows j .. j + rows, planes k .. k + planes), at most 32 of them.
+// Consecutive columns along x of one tile (rows j .. j + rows, planes k .. k + planes); at most 32 columns.
 struct Piece
 {
   std::int32_t i, lanes;              // columns, including the halo
   std::int32_t own_first, own_count;  // own columns, relative to i
   std::int32_t j;                     // first own row
-  std::int32_t k, planes;             // first plane; number of planes, including the halo
-  std::int32_t own_k, own_planes;     // first plane and number of planes that it owns
+  std::int32_t k, planes;             // first plane and number of planes, including the halo
+  std::int32_t own_k, own_planes;     // own planes: first plane and number of planes
   double cost;                        // in units of a plane without fibres
 };
 
@@ -96,7 +96,7 @@ struct Builder
                      lowest = std::min(lowest, k);
                      highest = std::max(highest, k);
                    });
-    // one more plane if tissue continues beyond the tile
+    // The piece has one more plane if tissue continues beyond the tile.
     const auto is_there = [](std::uint32_t) { return true; };
     p.k = lowest == p.own_k && any_voxel(p, lowest - 1, is_there) ? lowest - 1 : lowest;
     const bool above = highest == p.own_k + p.own_planes - 1 && any_voxel(p, highest, is_there);
@@ -108,7 +108,7 @@ struct Builder
     pieces.push_back(p);
   }
 
-  // Cuts a run of columns into pieces that fit a warp, with one more column on each side where tissue continues.
+  // Cuts a run of columns into pieces that fit into a warp, with one more column on each side where tissue continues.
   void add_run(std::int32_t first, std::int32_t last, Piece tile)
   {
     for (std::int32_t begin = first; begin <= last;)
@@ -211,7 +211,7 @@ VoxelStrips::VoxelStrips(const Model& model, const StripSettings& settings) : ro
   const auto warps = pack(builder.pieces);
   builder.pieces = {};
 
-  // own nodes are numbered in the order in which a warp processes them
+  // Own nodes are numbered in the order in which a warp processes them.
   device_node.assign(model.nodes.size(), 0);
   strip_of_node.assign(model.nodes.size(), 0);
   std::uint32_t next = 1;

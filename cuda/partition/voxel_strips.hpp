@@ -9,13 +9,13 @@
 namespace frontalis
 {
 
-/// Cuts the voxels of a model into strips. A strip is a bundle of 32 node columns, `rows` deep in y, that a warp walks
-/// along z: lanes are neighbours in x, and each lane holds its rows in registers. The lanes of a strip may belong to
-/// several pieces of the model, so that thin curved shells fill them.
+/// Settings for cutting the voxels of a model into strips. A strip is a bundle of 32 columns of nodes, `rows` deep in
+/// y, through which a warp walks along z: lanes are neighbours in x, and each lane holds its rows in registers. The
+/// lanes of a strip may belong to several pieces of the model, so that thin curved shells fill them.
 struct StripSettings
 {
   int rows = 4;     ///< rows of nodes that a strip owns
-  int planes = 64;  ///< most planes of nodes that a strip owns
+  int planes = 64;  ///< largest number of planes of nodes that a strip owns
 };
 
 /// One entry of a strip: a node, and the voxel of which it is the lower corner.
@@ -26,7 +26,7 @@ struct StripSlot
   static constexpr std::uint32_t node_mask = 0x3fffffffu;
 
   std::uint32_t node;   ///< device node with flags; 0: none
-  std::uint32_t voxel;  ///< 1 + model voxel, or a number that the caller puts in its place; 0: none
+  std::uint32_t voxel;  ///< 1 + index of the model voxel, or a number that the caller puts in its place; 0: none
 };
 
 struct Strip
@@ -36,11 +36,12 @@ struct Strip
   std::uint32_t slot_begin;  ///< layout of slots: [plane][row 0 .. rows + 1][lane]
   std::uint32_t planes;
   std::uint32_t fibre_begin;  ///< layout of words: [plane][row 0 .. rows][lane]; no words without fibres
-  std::uint32_t task_begin;   ///< restricted or loaded nodes that this strip owns
+  std::uint32_t task_begin;   ///< first task of the restricted or loaded nodes that this strip owns
   std::uint32_t task_end;
 };
 
-/// First fibre entry of a voxel * 16 + number of entries; 0: none. Throws Error if there are more than 15.
+/// Index of a voxel's first fibre entry * 16 + number of entries; 0: no fibres. Throws Error if there are more than 15
+/// entries.
 std::uint32_t fibre_word(const Model& model, std::uint32_t voxel);
 
 /// The strips of a model. Device nodes are numbered from 1 in the order of the strips; node 0 is a fixed placeholder.
@@ -55,7 +56,7 @@ struct VoxelStrips
   std::vector<std::uint32_t> device_node;    ///< number of each model node on the device
   std::vector<std::uint32_t> strip_of_node;  ///< strip that owns each model node
 
-  /// Fraction of the entries that hold a voxel.
+  /// Fraction of the entries that have a voxel.
   double filled() const;
 };
 

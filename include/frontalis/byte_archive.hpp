@@ -12,8 +12,8 @@
 namespace frontalis
 {
 
-/// Writes plain values to bytes, or reads them back in the same order, so that one list of fields serves both ways:
-/// archive(a)(b)(c). The bytes are those in memory, so files made of them can only be read on the same kind of machine.
+/// Writes plain values to bytes, or reads them back in the same order, so that one list of fields serves both:
+/// archive(a)(b)(c). The bytes are those in memory, so that only the same kind of machine can read them.
 class ByteArchive
 {
 public:

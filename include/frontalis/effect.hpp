@@ -9,7 +9,7 @@
 namespace frontalis
 {
 
-/// A part of the physics that can act on tissue. A scene has an effect if its keys ask for it and do not switch it off.
+/// A part of the physics that can act on tissue. A scene has an effect if its keys require it and do not switch it off.
 enum class Effect : std::uint8_t
 {
   elasticity,

@@ -42,7 +42,8 @@ struct AccuracyOptions
 Scene scene_with(Scene scene, const AccuracySetting& setting)
 {
   scene.accuracy = setting.profile;
-  // clear names and measured figures, which do not change the model: equal variants must have equal content
+  // Names and measured figures do not change the model. They are removed, because equal variants must have equal
+  // content.
   scene.accuracy.name = "standard";
   scene.accuracy.measured = {};
   scene.profiles.clear();
@@ -54,7 +55,7 @@ Scene scene_with(Scene scene, const AccuracySetting& setting)
   return scene;
 }
 
-// the profile named `standard`; if the user chose a profile or there is no standard, the scene's selected profile
+// The profile named `standard`, unless the user chose a profile; otherwise the scene's selected profile.
 AccuracyProfile standard_profile(const Scene& scene, bool chosen)
 {
   if (!chosen)
@@ -64,7 +65,7 @@ AccuracyProfile standard_profile(const Scene& scene, bool chosen)
   return scene.accuracy;
 }
 
-// the activations of an expression; in a model without expressions 0.75 for all muscles
+// The activations of an expression or, without one, 0.75 for all muscles.
 std::vector<float> activation_of(const Model& model, const AccuracyOptions& options)
 {
   if (!options.expression.empty())
@@ -83,7 +84,7 @@ void check_numbers(const AccuracyOptions& options)
       throw WrongUsage("--voxels, --budget, --ramp, --hold, --tolerance, --time: must be numbers greater than 0");
 }
 
-// takes over the options that apply to any subject; an option that was not given changes nothing
+// Copies the options that apply to any subject. Options that were not given change nothing.
 void take_options(const AccuracyOptions& options, AccuracyPlan& plan)
 {
   plan.standard.backend = options.solver.backend;
@@ -122,7 +123,7 @@ ClosedForm scene_subject(const AccuracyOptions& options)
     plan.edges.push_back(factor * plan.standard.profile.voxel[0]);
   take_options(options, plan);
 
-  // hash the meshes once, because they are the same for all settings
+  // The meshes are hashed once, because they are the same for all settings.
   Scene bare = scene_with(scene, {});
   const std::string meshes = bare.content;
   bare.surfaces.clear();
@@ -131,7 +132,7 @@ ClosedForm scene_subject(const AccuracyOptions& options)
                     [scene](const AccuracySetting& setting) {
                       return bake_interruptibly(scene_with(scene, setting), nullptr, [](const std::string&, double) {});
                     } };
-  // all models have the same muscles: take their names from the coarsest model, which is baked fastest
+  // All models have the same muscles. Their names come from the coarsest model, which is baked fastest.
   AccuracySetting coarsest = plan.standard;
   coarsest.profile.voxel.fill(plan.edges.front());
   plan.history.activation = activation_of(subject.maker.bake(coarsest), options);
@@ -154,7 +155,7 @@ ClosedForm closed_form_subject(ClosedForm form, const AccuracyOptions& options)
   return form;
 }
 
-// the subject on the command line: a scene, or a body with a closed-form solution
+// The subject on the command line: a scene, or a body with a closed-form solution.
 ClosedForm accuracy_subject(const AccuracyOptions& options)
 {
   check_numbers(options);
@@ -188,7 +189,7 @@ void write_outputs(const AccuracyFindings& findings, const AccuracyOptions& opti
   write_text(path + ".csv", table.csv());
   write_text(path + ".json", table.json());
   write_text(path + ".md", report + "\n![" + title + "](accuracy.png)\n");
-  // print the paragraphs of the report between title and table
+  // Only the paragraphs of the report between title and table are printed.
   const std::size_t begin = report.find("\n\n") + 2;
   fmt::print("\n{}\nreference {}\n\nwritten   {}.csv, .json, .md", table.text(),
              report.substr(begin, report.find("\n\n|") - begin), path);

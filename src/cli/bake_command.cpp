@@ -24,7 +24,7 @@ struct BakeOptions
   bool report = false;
 };
 
-// throws Error, before a long bake, if its result could not be written
+// Throws Error, before a long bake, if its result could not be written.
 void check_output(const BakeOptions& options)
 {
   const std::filesystem::path folder = std::filesystem::absolute(options.output).parent_path();
@@ -37,7 +37,7 @@ void check_output(const BakeOptions& options)
     throw Error(options.output + ": is the scene itself; must be another file");
 }
 
-// prints the number and name of each constraint, and how many nodes it holds
+// Prints the number and name of each constraint, and how many nodes it restricts.
 void print_constraints(const Model& model)
 {
   for (std::size_t c = 0; c < model.constraints.size(); ++c)

@@ -35,7 +35,7 @@ struct BenchOptions
   std::string plot;
 };
 
-// resident memory of this process after freed memory has gone back to the system [bytes]; 0 if it is unknown
+// Resident memory of this process after freed memory was returned to the system [bytes]; 0 if it is unknown.
 double resident_bytes()
 {
 #ifdef __GLIBC__
@@ -49,7 +49,7 @@ double resident_bytes()
 
 std::string percent(double share) { return fmt::format("{:.{}f} %", 100 * share, share < 0.1 ? 2 : 0); }
 
-// wall times of five repetitions of a task, ascending [s]
+// Wall times of five repetitions of a task, ascending [s].
 template <class Task>
 std::vector<double> times_of(const Task& task)
 {
@@ -64,7 +64,7 @@ std::vector<double> times_of(const Task& task)
   return times;
 }
 
-// the time of a check and a snapshot of the guard over the time of the steps between two checks
+// Time of a check and a snapshot of the guard, divided by the time of the steps between two checks.
 double guard_share(Solver& solver, double step)
 {
   std::unique_ptr<Snapshot> snapshot;
@@ -77,8 +77,8 @@ double guard_share(Solver& solver, double step)
   return times_of(check)[2] / (solver.steps_per_check() * step);
 }
 
-// the share of the time per step in which the CPU finds the critical time step. It does so once in 32 steps; a motion
-// of a single step does so in each step, and the difference is the cost.
+// Fraction of the time per step in which the CPU finds the critical time step. Normally this happens once in 32 steps.
+// A motion of a single step does it in each step, and the difference in time is the cost.
 double bound_share(Solver& solver, const Controls& controls, double step)
 {
   const double dt = 0.999 * solver.time_step();
@@ -91,14 +91,14 @@ double bound_share(Solver& solver, const Controls& controls, double step)
   return std::max(0.0, looking / 16 / step - 1) / 31;
 }
 
-// wall seconds per step in five repetitions, ascending
+// Wall seconds per step in five repetitions, ascending.
 std::vector<double> time_steps(Solver& solver, const Controls& controls, double seconds)
 {
   const double dt = solver.time_step();
   solver.advance(8 * dt, controls);
   const auto steps = [&] { return static_cast<double>(solver.profile().steps); };
   double start = wall_seconds(), before = steps();
-  // advance by several plans of steps, since a GPU solver queues some plans without waiting for them
+  // The loop advances by several plans of steps, because a GPU solver queues some plans without waiting for them.
   do
     solver.advance(32 * dt, controls);
   while (wall_seconds() - start < 0.05);
@@ -141,7 +141,7 @@ double bench_model(const std::string& name, const std::shared_ptr<const Model>& 
   return voxels / step;
 }
 
-// plots each effect's cost over the fraction of voxels that have it
+// Plots each effect's cost over the fraction of voxels that have the effect.
 void draw(const std::vector<PresenceCost>& costs, const std::string& backend, const std::string& path)
 {
   Plot plot{ "Cost of an effect against its extent: " + backend,
@@ -160,7 +160,7 @@ void draw(const std::vector<PresenceCost>& costs, const std::string& backend, co
 void bench_effects(const BenchOptions& options)
 {
   const double seconds = options.quick ? 1.0 : 4.0;
-  // check options and model before the measurement, which takes minutes
+  // Options and model are checked before the measurement, which takes minutes.
   const std::string plot = plot_path(options.plot);
   std::shared_ptr<const Model> model;
   if (!options.source.path.empty())
@@ -185,7 +185,7 @@ void bench_effects(const BenchOptions& options)
     fmt::print("one muscle active: {:.2f} us per step; all: {:.2f} us; spread of the difference {:.2f} us\n",
                1e6 * cost.one, 1e6 * cost.all, 1e6 * cost.spread);
   }
-  // draw last: the figures are printed even if the plot cannot be drawn
+  // The plot is drawn last, so that the figures are printed even if drawing fails.
   if (!plot.empty())
     draw(costs, options.solver.backend, plot);
 }

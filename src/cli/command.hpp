@@ -34,8 +34,8 @@ struct Interrupted
 /// Whether Ctrl-C or SIGTERM was received once; a second one ends the program.
 bool interrupt_requested();
 
-// One function per subcommand: it declares the options in `app` and the work that is done once the command line has
-// been read. The work throws Error, WrongUsage or Interrupted.
+// One function per subcommand. It declares the options in `app`, and the work to be done once the command line has been
+// read. The work throws Error, WrongUsage or Interrupted.
 void add_accuracy_command(CLI::App& app);
 void add_bake_command(CLI::App& app);
 void add_bench_command(CLI::App& app);

@@ -22,7 +22,7 @@ CLI::Option* add_positive(CLI::App& command, const std::string& name, Value& val
   return command.add_option(name, value, text)->check(CLI::PositiveNumber);
 }
 
-/// Declares --backend; the default is the value of `backend`. `automatic`: "auto" is allowed too.
+/// Declares --backend, whose default is the value of `backend`. `automatic`: whether "auto" is allowed.
 void add_backend_option(CLI::App& command, Backend& backend, bool automatic);
 
 /// Declares --backend and --threads.
@@ -31,11 +31,11 @@ void add_solver_options(CLI::App& command, SolverSettings& settings);
 /// Throws WrongUsage if --seconds is not a number greater than 0.
 void check_seconds(double seconds);
 
-/// The path of --plot FILE.png without its extension, for write_plot(); empty without the option. Throws WrongUsage on
-/// an extension other than .png.
+/// The path of --plot FILE.png without its extension, for write_plot(); empty if the option is not given. Throws
+/// WrongUsage on an extension other than .png.
 std::string plot_path(const std::string& option);
 
-/// The cases that `only` names, in the order of `cases`; if it is empty, the short cases, or all cases with `all`.
+/// The cases that `only` names, in the order of `cases`. If `only` is empty: the short cases, or all cases with `all`.
 /// Throws WrongUsage on a name that no case has.
 template <class Case>
 std::vector<Case> chosen_cases(std::vector<Case> cases, const std::vector<std::string>& only, bool all)

@@ -28,9 +28,9 @@ namespace
 using Json = nlohmann::ordered_json;
 
 constexpr double degree = 3.14159265358979323846 / 180;
-constexpr double depth_unit = 1e-4;   // [m] of a step of the 16-bit depth images
-constexpr int most_units = 4;         // action units that act at once
-constexpr double most_intensity = 2;  // sum of their intensities
+constexpr double depth_unit = 1e-4;   // depth of one unit of the 16-bit depth images [m]
+constexpr int most_units = 4;         // largest number of action units that act at the same time
+constexpr double most_intensity = 2;  // largest sum of the intensities of action units
 
 struct DatasetOptions
 {
@@ -43,7 +43,7 @@ struct DatasetOptions
   SolverSettings solver;
 };
 
-/// Numbers that depend on the seed and the frame alone, on every machine.
+/// Random numbers that depend on the seed and the frame only, so that they are the same on every machine.
 class Random
 {
 public:
@@ -62,7 +62,6 @@ private:
   std::mt19937_64 engine_;
 };
 
-/// The random choices for one frame.
 struct RandomFrame
 {
   std::map<std::string, double> units;
@@ -75,7 +74,7 @@ std::array<double, 3> direction(double yaw, double pitch)
   return { std::cos(pitch) * std::cos(yaw), std::cos(pitch) * std::sin(yaw), std::sin(pitch) };
 }
 
-// `low`, `high`: corners of the box around the skin at rest
+// Makes the random choices for a frame. `low`, `high`: corners of the box around the skin at rest.
 RandomFrame choose(Random random, const DatasetOptions& options, const Model& model, const std::array<double, 3>& low,
                    const std::array<double, 3>& high)
 {
@@ -101,7 +100,7 @@ RandomFrame choose(Random random, const DatasetOptions& options, const Model& mo
     target[i] = 0.5 * (low[i] + high[i]) + random.between(-0.05, 0.05) * (high[i] - low[i]);
     extent = std::max(extent, high[i] - low[i]);
   }
-  // the face fills 45 to 90 % of the shorter side
+  // The face fills 45 to 90 % of the shorter side of the image.
   const double distance =
       chosen.camera.fx * extent / (random.between(0.45, 0.9) * std::min(options.size[0], options.size[1]));
   const auto from = direction(random.between(-50, 50) * degree, random.between(-25, 25) * degree);
@@ -156,7 +155,7 @@ Json labels_of(const Model& model, const RandomFrame& chosen, const Renderer& re
   return json;
 }
 
-// writes the images of a frame and returns their names
+// Writes the images of a frame and returns their names.
 Json write_images(const std::string& folder, int frame, const Images& images, int width, int height)
 {
   std::vector<std::uint16_t> depth(images.depth.size());
@@ -187,7 +186,7 @@ Json write_images(const std::string& folder, int frame, const Images& images, in
 void check_same(const std::string& file, const Json& now)
 {
   std::ifstream in(file);
-  // a part of a set that another machine began
+  // The file is missing if this folder continues a data set that another machine began.
   if (!in)
     return;
   const Json before = Json::parse(in, nullptr, false);
@@ -197,7 +196,7 @@ void check_same(const std::string& file, const Json& now)
                               found.dump(), value.dump()));
 }
 
-// Removes a last line that was not written completely. Throws Error if the list has frames from `first` on already.
+// Removes a last line that was not written completely. Throws Error if the list already has frames from `first` on.
 void check_list(const std::string& list, int first)
 {
   std::ifstream in(list, std::ios::binary);
@@ -265,7 +264,7 @@ void write_dataset(const DatasetOptions& options)
       line["images"] = write_images(options.folder, frame, renderer.images(chosen.light, options.samples),
                                     options.size[0], options.size[1]);
       line.update(labels_of(*model, chosen, renderer, skin, face));
-      // a line that is there names images that are complete
+      // A line is written only after the images that it names are complete.
       lines << line.dump() + "\n" << std::flush;
       if (!lines)
         throw Error(list + ": cannot be written");

@@ -83,7 +83,7 @@ void draw(const EffectCosts& costs, const std::string& path)
   write_plot(plot, path);
 }
 
-// prints the bytes of each of the solver's arrays
+// Prints the size of each of the solver's arrays [bytes].
 void show_arrays(const EffectsOptions& options)
 {
   const auto solver = make_solver(std::make_shared<const Model>(obtain_model(options.source)), options.solver);
@@ -114,7 +114,7 @@ void show_effects(const EffectsOptions& options)
     fmt::print("{}", json_of(*model, costs));
   else
     print(*model, costs);
-  // draw last: the figures are printed even if the plot cannot be drawn
+  // The plot is drawn last, so that the figures are printed even if drawing fails.
   std::fflush(stdout);
   if (!plot.empty())
     draw(costs, plot);
@@ -137,7 +137,7 @@ void add_effects_command(CLI::App& app)
   command->callback(
       [options]
       {
-        // with --json, stdout has nothing but the JSON
+        // With --json, stdout receives nothing but the JSON.
         if (options->json)
           options->source.progress = stderr;
         show_effects(*options);

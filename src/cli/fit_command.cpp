@@ -34,7 +34,7 @@ std::string in_millimetres(const std::vector<double>& metres)
 
 void show_progress(FitSettings& settings, Progress& progress)
 {
-  // without a terminal, progress has one line per stage, so name the percentage in the stage
+  // Without a terminal, progress has one line per stage, so that the stage must include the percentage.
   const bool lines = isatty(STDERR_FILENO) == 0;
   settings.watch = [&progress, lines](const std::string& stage, double done)
   {

@@ -26,7 +26,7 @@ RigidTransform pose_from(const std::array<double, 6>& values)
                       { { 1e-3 * values[0], 1e-3 * values[1], 1e-3 * values[2] } });
 }
 
-// the controls of a row. Columns after the first are muscles or components of bones, such as BONE.x.
+// The controls of a row. Columns after the first are muscles or components of bones, such as BONE.x.
 Controls row_controls(const Model& model, const std::vector<std::string>& header, const std::vector<double>& row,
                       const std::string& place)
 {
@@ -136,7 +136,7 @@ ControlCurve read_control_curve(const std::string& path, const Model& model)
     if (!(time >= 0) || (!empty && time <= curve.time.back()))
       throw Error(place + "time is " + table.fields()[0] + "; times must ascend from 0");
     empty = false;
-    // the first knot must be at time 0, even if the table has no row for it
+    // The first knot must be at time 0, even if the table has no row for that time.
     if (time > 0)
     {
       curve.time.push_back(time);

@@ -32,7 +32,7 @@ struct GltfOptions
   SolverSettings solver;
 };
 
-// codes of glTF 2.0
+// Codes defined by glTF 2.0.
 enum : int
 {
   unsigned_int = 5125,
@@ -43,7 +43,7 @@ enum : int
 
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "the bytes of numbers are written as they are in memory");
 
-/// A binary glTF file in the making: its JSON and its one buffer.
+/// A binary glTF file that is being built: its JSON and its one buffer.
 class Glb
 {
 public:
@@ -66,7 +66,7 @@ public:
                { { "componentType", unsigned_int }, { "type", "SCALAR" } });
   }
 
-  /// The file with the primitives of one mesh, which has the named morph targets.
+  /// Returns the file with the primitives of one mesh, which has the named morph targets.
   std::string bytes(const Json& primitives, const std::vector<std::string>& targets)
   {
     json_["asset"] = { { "version", "2.0" }, { "generator", "frontalis " FRONTALIS_VERSION } };
@@ -113,7 +113,7 @@ private:
   std::string buffer_;
 };
 
-// axes of glTF: x to the face's left, y up, z out of the face
+// Converts to the axes of glTF: x to the face's left, y up, z out of the face.
 Points turned(const Points& in)
 {
   Points out;
@@ -131,7 +131,7 @@ Points difference(Points now, const Points& rest)
   return now;
 }
 
-// a ball as a mesh: rings of points from pole to pole
+// A ball as a mesh: rings of points from pole to pole.
 RenderMesh mesh_of(const RenderBall& ball)
 {
   constexpr int rings = 24, columns = 48;
@@ -170,7 +170,7 @@ Json primitive_of(Glb& glb, RenderMesh mesh)
   Json attributes{ { "POSITION", glb.add(turned(mesh.vertices)) } };
   if (!mesh.normals.empty())
     attributes["NORMAL"] = glb.add(turned(mesh.normals));
-  // colours of glTF are linear
+  // Colours of glTF are linear.
   for (auto& colour : mesh.colours)
     for (float& channel : colour)
       channel = std::pow(channel, 2.2F);

@@ -11,7 +11,7 @@ namespace
 
 volatile std::sig_atomic_t requested = 0;
 
-// the first Ctrl-C or SIGTERM only sets the flag; the second one ends the program at once
+// The first Ctrl-C or SIGTERM only sets the flag; the second one ends the program at once.
 void catch_interrupts()
 {
   struct sigaction action = {};
@@ -60,7 +60,7 @@ int main(int argc, char** argv)
   }
   catch (const CLI::ParseError& error)
   {
-    // --help and --version are exceptions too, with code 0
+    // --help and --version are exceptions too, with code 0.
     return app.exit(error) == 0 ? frontalis::exit_success : frontalis::exit_wrong_usage;
   }
   catch (const frontalis::Interrupted&)

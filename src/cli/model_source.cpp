@@ -35,7 +35,7 @@ bool is_model_file(const std::string& path)
   const std::string extension = std::filesystem::path(path).extension().string();
   if (extension == ".vtkhdf" || extension == ".h5" || extension == ".hdf5")
     return true;
-  // the first eight bytes of every HDF5 file
+  // The first eight bytes of every HDF5 file.
   const std::string signature = "\x89HDF\r\n\x1a\n";
   std::string begin(signature.size(), '\0');
   std::ifstream file(path, std::ios::binary);
@@ -47,7 +47,7 @@ bool is_model_file(const std::string& path)
 namespace
 {
 
-// The cached model with the given hash of its scene, if it is usable. `told` receives a sentence on what was found.
+// The cached model with the given hash of its scene, if it is usable. `told` receives a sentence about the result.
 std::optional<Model> cached_model(const std::string& path, const std::string& hash, std::string& told)
 {
   if (path.empty() || !std::filesystem::exists(path))
@@ -65,7 +65,7 @@ std::optional<Model> cached_model(const std::string& path, const std::string& ha
   }
 }
 
-// failing to store the model is not an error, because the bake has succeeded
+// Stores the model. A failure is not an error, because the bake has succeeded.
 void keep_in_cache(const Model& model, const std::string& path, std::string& told)
 {
   if (path.empty())
@@ -125,7 +125,7 @@ Model bake_interruptibly(const Scene& scene, BakeReport* report,
   }
   catch (const Error&)
   {
-    // bake() also throws Error when it is interrupted
+    // bake() also throws Error when it is interrupted.
     if (!interrupt_requested())
       throw;
   }

@@ -31,7 +31,7 @@ struct ModelSource
 /// The report of a bake, ready to print.
 struct BakeSummary
 {
-  bool whole = false;   ///< set before the bake to measure the muscles too
+  bool whole = false;   ///< set before the bake in order to measure the muscles too
   std::string stages;   ///< use of the cache, if there is one; seconds, peak memory and name of each stage
   std::string muscles;  ///< a table of the muscles' volumes
   std::vector<std::string> findings;

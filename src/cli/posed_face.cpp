@@ -29,7 +29,7 @@ void PosedFace::read_skin(SkinState& skin)
 
 const SkinState& PosedFace::take(const Controls& pose, double seconds, const std::function<void(double done)>& watch)
 {
-  constexpr int slices = 12;  // Ctrl-C is noticed between two of them
+  constexpr int slices = 12;  // Ctrl-C takes effect between two slices
   solver_->reset();
   if (fine_lines_)
     fine_lines_->reset();
@@ -42,7 +42,8 @@ const SkinState& PosedFace::take(const Controls& pose, double seconds, const std
     if (interrupt_requested())
       throw Interrupted();
   }
-  // The guard looks only every few hundred steps, so it is asked about the last ones. After a finding it has gone back.
+  // The guard checks only every few hundred steps, so that it must also check the last ones. After a finding it has
+  // returned to an earlier state, and the rest of the motion is repeated.
   const double end = solver_->time();
   for (std::int64_t before = -1; before != guard_.counts().rollbacks;)
   {

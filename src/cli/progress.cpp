@@ -27,7 +27,7 @@ void Progress::update(const std::string& stage, double done)
     clear();
     if (terminal_)
     {
-      // print the scale in one line after the name, and the bar in the next line
+      // The scale is printed in one line after the name, the bar in the next line.
       const std::string space(name_width, ' ');
       const std::string name = stage + std::string(name_width - std::min(name_width, stage.size()), ' ');
       bar_.emplace(steps, std::cerr, space, name, space);

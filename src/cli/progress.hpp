@@ -9,11 +9,11 @@
 namespace frontalis
 {
 
-/// Shows the progress of work: one bar per stage if stderr is a terminal, else one line per stage.
+/// Shows the progress of work, with one bar per stage if stderr is a terminal, else with one line per stage.
 class Progress
 {
 public:
-  /// `lines`: stream for the lines without a terminal; null: no lines.
+  /// `lines`: stream for lines if stderr is not a terminal; null: no lines.
   explicit Progress(std::FILE* lines = stdout);
   ~Progress() { clear(); }
   Progress(const Progress&) = delete;

@@ -8,7 +8,8 @@
 namespace frontalis
 {
 
-/// Prints forces and moments on bodies. Moments are about the point about which `--bone` rotates a bone.
+/// Prints forces and moments on bodies. The reference point of moments is the point about which `--bone` rotates a
+/// bone.
 void print_reactions(const Model& model, const std::vector<BodyFrame>& bodies);
 
 /// Header of a table (CSV) with one row per frame and body.

@@ -24,7 +24,7 @@ namespace frontalis
 namespace
 {
 
-// time steps between two checks whether Ctrl-C was pressed: about a second of wall time with a large model
+// Time steps between two checks for Ctrl-C: about a second of wall time with a large model.
 constexpr double steps_per_slice = 4096;
 
 struct RunOptions
@@ -37,13 +37,13 @@ struct RunOptions
   std::vector<std::string> without;
   bool to_equilibrium = false;
   double tolerance = 1e-3;
-  double ramp = -1;  ///< [s]; < 0: 0.1 s, or half of the run if this is less
+  double ramp = -1;  ///< duration of the ramp [s]; < 0: 0.1 s, or half of the run if that is less
   bool demo = false;
   double seconds = 1;
   bool seconds_given = false;
   std::string frames, plot, movie;
   bool wrinkles = false;
-  std::vector<double> wrinkles_in;  ///< least left and up, greatest left and up [mm]; empty: everywhere
+  std::vector<double> wrinkles_in;  ///< smallest left and up, largest left and up [mm]; empty: everywhere
   bool vtp = false;
   double frame_rate = 0;  ///< [1/s]; 0: the model's frame rate
   SolverSettings solver;
@@ -63,7 +63,7 @@ struct Run
   std::optional<Guard> guard{};
   std::unique_ptr<FineLines> fine_lines{};
   RunSummary summary{};
-  double time = 0;  ///< simulated time so far [s], on the clock of the activations
+  double time = 0;  ///< simulated time so far, on the clock of the activations [s]
 
   void play();
   void settle();
@@ -101,7 +101,7 @@ void Run::observe()
   summary.worst_jacobian = std::min(summary.worst_jacobian, summary.monitor.worst_jacobian);
 }
 
-// activations and bones move linearly between the knots of the curve
+// Advances to a time. Activations and bones move linearly between the knots of the curve.
 void Run::advance_to(double end)
 {
   for (const double knot : curve.time)
@@ -125,7 +125,7 @@ void Run::advance(double end)
   }
 }
 
-// plays the motion frame by frame; ends early on Ctrl-C
+// Plays the motion frame by frame. Ctrl-C ends it early.
 void Run::play()
 {
   const double frame_rate = options.frame_rate > 0 ? options.frame_rate : model.frame_rate;
@@ -155,7 +155,7 @@ void Run::play()
   }
 }
 
-// relaxes the tissue to equilibrium under the final activations
+// Relaxes the tissue to equilibrium under the final activations.
 void Run::settle()
 {
   const double begin = wall_seconds();
@@ -206,7 +206,7 @@ void check_options(const RunOptions& options)
     throw WrongUsage("--seconds times --frame-rate: more than a million frames");
 }
 
-// switch off in reverse order, because an effect comes after those that it needs
+// Effects are switched off in reverse order, because each comes after those that it needs.
 void switch_off(Solver& solver, EffectSet off)
 {
   const auto effects = every_effect();
@@ -230,7 +230,7 @@ ControlCurve curve_of(const RunOptions& options, const Model& model)
   return options.bones.empty() ? curve : with_bones(curve, bones, ramp);
 }
 
-// returns the demo of the model; unless --seconds was given, sets it to the demo's duration
+// Returns the demo of the model. Unless --seconds was given, sets it to the demo's duration.
 ControlCurve demo_of(RunOptions& options, const Model& model)
 {
   if (model.demo.empty())
@@ -294,7 +294,7 @@ void simulate(RunOptions& options)
   }
   catch (const Error& error)
   {
-    // write the result so far before the error is reported
+    // The result so far is written before the error is reported.
     summary.complete = false;
     summary.failure = error.what();
     if (run.folder)

@@ -33,7 +33,7 @@ double updates_per_second(const Model& model, const Profile& profile)
   return ratio(static_cast<double>(model.voxels.size()) * static_cast<double>(profile.steps), profile.stepping);
 }
 
-// motion of a landmark in the face frame [mm]: forward (x), left (y), up (z)
+// Motion of a landmark in the face frame [mm]: forward (x), left (y), up (z).
 std::array<double, 3> motion_of(const RunSummary& summary, std::size_t landmark)
 {
   std::array<double, 3> motion{};
@@ -42,7 +42,6 @@ std::array<double, 3> motion_of(const RunSummary& summary, std::size_t landmark)
   return motion;
 }
 
-// energies by name [J]
 std::vector<std::pair<std::string, double>> energies_of(const EnergyLedger& ledger)
 {
   std::vector<std::pair<std::string, double>> energies{ { "initial", ledger.initial } };
@@ -83,7 +82,7 @@ std::string ply_of(const SkinState& skin, const std::vector<std::array<std::int3
   return bytes;
 }
 
-// VTK's XML format of a surface: the numbers follow the text, each array after its size in bytes
+// VTK's XML format of a surface. The numbers follow the text; each array follows its size in bytes.
 std::string vtp_of(const SkinState& skin, const SkinState& first,
                    const std::vector<std::array<std::int32_t, 3>>& triangles)
 {

@@ -11,27 +11,26 @@
 namespace frontalis
 {
 
-/// The result of a run.
 struct RunSummary
 {
   std::string backend;
-  double seconds = 0;    ///< simulated, on the clock of the activations [s]
+  double seconds = 0;    ///< simulated time, on the clock of the activations [s]
   double wall = 0;       ///< wall time without building the model and the solver [s]
   double time_step = 0;  ///< [s]
   int frames = 0;
   double fine_lines = 0;    ///< processor time of finding fine lines, in all frames [s]
-  bool complete = true;     ///< false: interrupted or stopped
+  bool complete = true;     ///< false: the run was interrupted or stopped
   std::string failure;      ///< why it was stopped; empty: it was not stopped
-  Monitor monitor;          ///< at the end
+  Monitor monitor;          ///< at the end of the run
   double peak_kinetic = 0;  ///< [J]
   double peak_internal = 0;
   double worst_jacobian = 1;  ///< of the whole run
   Profile profile;
   std::optional<GuardCounts> guard;        ///< empty: the motion was not guarded
-  std::optional<EnergyLedger> ledger;      ///< at the end, if one was kept
-  std::vector<BodyFrame> bodies;           ///< at the end, one per body that tissue touches
+  std::optional<EnergyLedger> ledger;      ///< at the end of the run, if a ledger was kept
+  std::vector<BodyFrame> bodies;           ///< at the end of the run, one per body that tissue touches
   std::optional<Equilibrium> equilibrium;  ///< empty: the run did not settle
-  std::optional<Wrinkles> wrinkles;        ///< at the end, if they were to be measured
+  std::optional<Wrinkles> wrinkles;        ///< at the end of the run, if they were to be measured
   SkinState rest;                          ///< face frame
   SkinState end;                           ///< face frame
 };
@@ -42,19 +41,20 @@ void print_set_up(const Model& model, const RunSummary& summary);
 /// Prints the motion of the landmarks, the energies and the speed.
 void print_result(const Model& model, const RunSummary& summary);
 
-/// The same as JSON.
+/// The result as JSON.
 std::string json_of(const Model& model, const RunSummary& summary);
 
-/// A folder of frames: skin_0000.ply, skin_0001.ply, ..., landmarks.csv and run.json; with `vtp` also skin_0000.vtp,
-/// ... and skin.pvd, which lists them with their times for ParaView. Every file is written whole or not at all.
+/// A folder of frames: skin_0000.ply, skin_0001.ply, ..., landmarks.csv and run.json. With `vtp` also skin_0000.vtp,
+/// ... and skin.pvd, which lists these files with their times for ParaView. Every file is written completely or not at
+/// all.
 class FrameFolder
 {
 public:
   /// Makes the folder if it is missing and removes the files of an earlier run from it. Throws Error.
   FrameFolder(std::string path, const Model& model, bool vtp);
 
-  /// Writes the skin, in the face frame, as binary little-endian PLY: vertices and normals as float, triangles. VTP has
-  /// the displacement from the first frame [m] too.
+  /// Writes the skin, in the face frame, as binary little-endian PLY: vertices and normals as float, triangles. A VTP
+  /// file also has the displacement from the first frame [m].
   void add(double time, const SkinState& skin, const std::vector<BodyFrame>& bodies);
   /// Writes landmarks.csv (position [m] and motion from the first frame [mm], face frame), run.json and, if tissue
   /// may touch bodies, reactions.csv (force [N] and moment [N m], face frame).

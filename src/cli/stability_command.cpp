@@ -29,7 +29,7 @@ struct StabilityOptions
   std::string mesh_directory;  ///< folder of the meshes of the real head
 };
 
-// Folders in which files of the package may be: installed (share/ beside bin/ or lib/frontalis/), bundled, sources.
+// Folders in which files of the package may be: installed (share/ beside bin/ or lib/frontalis/), bundled, or sources.
 std::vector<fs::path> folders(const std::string& shared, const std::string& bundled, const std::string& source)
 {
   std::error_code none;
@@ -38,7 +38,7 @@ std::vector<fs::path> folders(const std::string& shared, const std::string& bund
            program / ".." / bundled, fs::path(FRONTALIS_SOURCE_DIRECTORY) / source };
 }
 
-// the folder with the files of the cases: `given` or, if that is empty, the folder beside the program or in the sources
+// The folder of the cases' files: `given` or, if that is empty, the folder beside the program or in the sources.
 std::string stability_folder(const std::string& given)
 {
   if (!given.empty())

@@ -78,7 +78,8 @@ void check(const Model& model)
   check_joints(model);
 }
 
-// A model without attached nodes stores nothing.
+// Writes or reads the attached nodes of a model file. The file of a model without attached nodes has no arrays for
+// them.
 template <class Archive, class Nodes>
 void exchange_nodes(Archive& archive, Nodes& nodes)
 {

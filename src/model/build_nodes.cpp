@@ -38,16 +38,17 @@ void build_nodes(Model& model)
   model.nodes.clear();
   model.voxel_nodes.assign(voxel_count, {});
 
-  // numbers of the nodes in a plane of the grid; -1: no node
+  // Numbers of the nodes in one plane of the grid; -1: no node.
   std::vector<std::int32_t> number(static_cast<std::size_t>(row_length * (model.size[1] + 1)));
-  // index within the plane of the lower corner 0 to 3 (i + 2j) of a voxel
+  // Index within the plane of a voxel's lower corner 0 to 3 (i + 2j).
   const auto place = [&](std::size_t e, std::size_t corner)
   {
     const auto row = static_cast<std::ptrdiff_t>(model.voxels[e][1] + (corner >> 1));
     return row * row_length + model.voxels[e][0] + static_cast<std::ptrdiff_t>(corner & 1);
   };
 
-  // the nodes of plane k are corners of the voxels of layers k - 1 and k: mark those of both, then number the plane
+  // The nodes of plane k are corners of the voxels in layers k - 1 and k. Mark the corners of both layers, then number
+  // the plane.
   std::size_t before = 0, here = 0;
   for (std::int32_t k = 0; k <= model.size[2]; ++k)
   {

@@ -47,7 +47,7 @@ void check(const Model& model)
   }
 }
 
-// Writes or reads the contacts of a model file. A model without contacts stores nothing.
+// Writes or reads the contacts of a model file. The file of a model without contacts has no arrays for them.
 template <class Archive, class Contacts>
 void exchange_contacts(Archive& archive, Contacts& contacts)
 {
@@ -70,7 +70,7 @@ void exchange_contacts(Archive& archive, Contacts& contacts)
   }
 }
 
-// if bodies share nodes, the nodes get the highest bone index
+// If several bodies share nodes, the nodes get the highest bone index.
 void set_bones(const Model& model, std::vector<std::int32_t>& bone)
 {
   for (const Contact& contact : model.contacts)
@@ -127,7 +127,7 @@ void set_points(Contact& contact, const TriangleMesh& surface, const Binding& bi
 namespace
 {
 
-/// Converts a place from the face frame to the local frame [m].
+/// Converts a point from the face frame to the local frame [m].
 std::array<double, 3> local_place(const Model& model, const std::array<double, 3>& p)
 {
   const RigidTransform& to_face = model.to_face;

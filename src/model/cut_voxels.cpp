@@ -32,7 +32,7 @@ void check(const Model& model)
         fail("tissue_centre", "entry {} is {}; coordinates run from -1 to 1", e, x);
 }
 
-// A model without cut voxels stores nothing.
+// Writes or reads the tissue centroids of a model file. The file of a model without cut voxels has no array for them.
 template <class Archive, class Centres>
 void exchange_centres(Archive& archive, Centres& centres)
 {

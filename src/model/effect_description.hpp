@@ -16,16 +16,16 @@ class ModelWriter;
 struct EffectDescription
 {
   Effect effect;
-  /// Presence of the effect, if it is not switched off.
+  /// Tells whether and where the model has the effect, if it is not switched off.
   EffectPresence (*found)(const Model&);
   /// Removes the effect from the model. `off`: all effects that are being removed.
   void (*remove)(Model&, EffectSet off) = nullptr;
   /// Checks the effect's part of a model; throws Error as check_model() does.
   void (*check)(const Model&) = nullptr;
-  /// Writes the effect's own arrays to a model file.
+  /// Write and read the effect's own arrays in a model file.
   void (*write)(ModelWriter&, const Model&) = nullptr;
   void (*read)(ModelReader&, Model&) = nullptr;
-  /// See moving_bones() and touched_bodies().
+  /// Contribute to moving_bones() and touched_bodies().
   void (*set_bones)(const Model&, std::vector<std::int32_t>& bone_of_node) = nullptr;
   void (*add_bodies)(const Model&, std::vector<TouchedBody>& bodies) = nullptr;
 };

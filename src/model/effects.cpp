@@ -21,7 +21,7 @@ bool is_off(const Model& model, Effect effect)
   return std::find(off.begin(), off.end(), name_of(effect)) != off.end();
 }
 
-// number of voxels with a fibre, or with a fibre of a muscle that has passive stress
+// Number of voxels with fibres; with `passive_alone`, only fibres of muscles that have passive stress count.
 std::size_t voxels_with_fibres(const Model& model, bool passive_alone)
 {
   std::size_t count = 0;
@@ -110,7 +110,7 @@ void remove_fibres(Model& model, bool keep_passive)
   model.fibre_direction.resize(kept);
 }
 
-// removes the loads for which the condition holds, and the prescribed nodes that follow them
+// Removes the loads for which the condition holds, and the prescribed nodes that follow them.
 template <class Condition>
 void remove_loads(Model& model, Condition&& goes)
 {
@@ -272,7 +272,7 @@ EffectDescription output_fields()
           } };
 }
 
-// in the order of the enumeration Effect
+// The entries are in the order of the enumeration Effect.
 const std::array<EffectDescription, effect_traits.size()> descriptions{
   { elasticity(), fibre_stiffness(), contraction(), viscosity(), gravity(), surface_loads(), prescribed_displacement(),
     rigid_nodes(), sliding(), friction(), contact_description(), self_contact_description(), attachment_description(),
@@ -330,7 +330,7 @@ std::vector<TouchedBody> touched_bodies(const Model& model)
 std::vector<std::int32_t> moving_bones(const Model& model)
 {
   std::vector<std::int32_t> bone(model.nodes.size(), -1);
-  // in reverse order: effects that restrict a node override those that only touch it
+  // Effects are visited in reverse order, because those that restrict a node override those that only touch it.
   for (auto effect = descriptions.rbegin(); effect != descriptions.rend(); ++effect)
     if (effect->set_bones != nullptr)
       effect->set_bones(model, bone);

@@ -56,7 +56,7 @@ public:
   Hdf5File& operator=(const Hdf5File&) = delete;
   ~Hdf5File();
 
-  /// Writes everything out; throws Error if that fails (a full disk, say).
+  /// Writes all data to the file. Throws Error if that fails, for instance because the disk is full.
   void close();
 
   void make_group(const std::string& path);
@@ -83,13 +83,13 @@ public:
 
   void write_attribute(const std::string& group, const std::string& name, const std::vector<std::int64_t>& values);
   void write_attribute(const std::string& group, const std::string& name, const std::string& value);
-  /// The value of the attribute; `otherwise` if it does not exist.
+  /// Returns the value of the attribute, or `otherwise` if it does not exist.
   std::int64_t attribute(const std::string& group, const std::string& name, std::int64_t otherwise) const;
 
 private:
   explicit Hdf5File(hid_t file) : file_(file) {}
   void write(const std::string& path, const void* data, hsize_t rows, hsize_t width, hid_t memory, hid_t type);
-  /// Number of rows of an array. Throws Error if they do not have this width.
+  /// Number of rows of an array. Throws Error if the rows do not have this width.
   hsize_t rows(const std::string& path, hsize_t width) const;
   void read(const std::string& path, void* data, hsize_t rows, hid_t memory) const;
   void write_attribute(const std::string& group, const std::string& name, hid_t space, hid_t memory, hid_t type,

@@ -14,7 +14,7 @@ namespace
 
 using physics::DistanceField;
 
-// A point of the lattice of samples. Bricks share the points on their faces.
+// A point of the lattice of samples. Neighbouring bricks share the points on their common faces.
 using Place = std::array<std::int32_t, 3>;
 
 class Lattice
@@ -28,13 +28,13 @@ public:
             { { b % field.bricks[0], b / field.bricks[0] % field.bricks[1], b / field.bricks[0] / field.bricks[1] } });
   }
 
-  // Two neighbours that differ by more than the spacing move towards each other by half of the excess each. Then their
-  // own neighbours are checked.
+  // Moves two neighbouring samples that differ by more than the spacing towards each other, each by half of the excess.
+  // Then the neighbours of both are checked.
   void limit()
   {
     std::vector<Place> now = steep_places(), next;
     std::vector<bool> listed(field_.samples.size(), false);
-    std::vector<std::size_t> marks;  // of `listed`
+    std::vector<std::size_t> marks;  // indices into `listed`
     const auto revisit = [&](const Place& place, const Samples& samples)
     {
       const auto mark = static_cast<std::size_t>(samples.at[0] - field_.samples.data());
@@ -81,18 +81,18 @@ public:
 private:
   static constexpr std::int32_t edge = DistanceField::brick_edge, width = DistanceField::brick_row;
 
-  // The tolerance makes the iteration end.
+  // The tolerance of 1 % makes the iteration end.
   bool steep(double difference) const { return std::abs(difference) > 1.01 * field_.spacing; }
 
-  // The samples of a place, one for each stored brick that has it.
+  // The samples at a place, one for each stored brick that contains the place.
   struct Samples
   {
     std::array<float*, 8> at{};
-    std::array<Place, 8> in_brick{};  // where in its brick each sample is, 0 to 9 along each axis
+    std::array<Place, 8> in_brick{};  // position of each sample in its brick, 0 to 9 along each axis
     std::size_t count = 0;
   };
 
-  // The sample beside a place; null if none is stored. Neighbours are always together in one of the bricks.
+  // The sample beside a place; null if none is stored. At least one brick contains both a place and its neighbour.
   static const float* neighbour_of(const Samples& samples, std::size_t axis, std::int32_t side)
   {
     constexpr std::array<std::int32_t, 3> step{ { 1, width, width * width } };
@@ -115,7 +115,8 @@ private:
   {
     Samples found;
     std::array<std::array<std::int32_t, 2>, 3> range{};
-    // brick b has the places 8 b - 1 to 8 b + 8; the quotients round down, also those of places just below 0
+    // Brick b contains the places 8 b - 1 to 8 b + 8. The offsets keep dividends positive, so that quotients round
+    // down.
     for (std::size_t axis = 0; axis < 3; ++axis)
       range[axis] = { { (place[axis] - 1 + 2 * edge) / edge - 2, (place[axis] + 1 + edge) / edge - 1 } };
     Place b{};
@@ -133,7 +134,7 @@ private:
     return found;
   }
 
-  // Places that differ from a neighbour by too much, some of them repeatedly.
+  // Places that differ from a neighbour by too much. A place may occur several times.
   std::vector<Place> steep_places() const
   {
     std::vector<Place> places;
@@ -156,7 +157,7 @@ private:
   }
 
   SampledField& field_;
-  std::vector<Place> stored_;  ///< bricks
+  std::vector<Place> stored_;  ///< bricks with samples
 };
 
 }  // namespace

@@ -12,13 +12,13 @@
 namespace frontalis
 {
 
-/// Names a field of a structure as a column of a table in the file.
+/// Names a member of a structure as a column of a table in the file.
 template <class Row, class Value>
 struct Column
 {
   const char* name;
   Value Row::*field;
-  /// Values as bytes for bool, because std::vector<bool> is not an array in memory.
+  /// bool is stored as bytes, because std::vector<bool> is not an array in memory.
   using Values = std::vector<std::conditional_t<std::is_same_v<Value, bool>, std::uint8_t, Value>>;
 };
 template <class Row, class Value>
@@ -30,7 +30,7 @@ class ModelWriter
 public:
   ModelWriter(Hdf5File& file, std::string group) : file_(file), group_(std::move(group)) {}
 
-  /// Whether to continue with a group that the file has only if `stored` is true.
+  /// Whether the file has a group that is stored only if `stored` is true.
   bool group_if(bool stored, const std::string&) const { return stored; }
 
   template <class T>

@@ -43,12 +43,12 @@ void synchronise(const std::string& path)
   const int result = ::fsync(descriptor);
   const int reason = errno;
   ::close(descriptor);
-  // some file systems cannot synchronise folders
+  // Some file systems cannot synchronise folders.
   if (result != 0 && reason != EINVAL)
     throw Error(std::string("cannot be written to the disk: ") + std::strerror(reason));
 }
 
-/// Reads a model. If `scene_hash` is not null, the model must be that of this scene.
+/// Reads a model. If `scene_hash` is not null, the model must have been baked from the scene with this hash.
 Model read(const std::string& path, const std::string* scene_hash)
 {
   try

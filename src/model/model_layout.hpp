@@ -59,12 +59,12 @@ void exchange_poses(Archive& archive, const std::string& path, Poses& poses)
   }
 }
 
-/// Writes the group VTKHDF, version 1.0, an unstructured grid of VTK_VOXEL cells (whose corner order is ours), with
-/// material, fill, muscle and fibre of each voxel and the constraint of each node, so that ParaView opens the model
-/// file. Points are in local coordinates [m].
+/// Writes the group VTKHDF, version 1.0, with which ParaView opens the model file: an unstructured grid of VTK_VOXEL
+/// cells, whose corners have the same order as those of our voxels. It has material, fill, muscle and fibre of each
+/// voxel and the constraint of each node. Points are in local coordinates [m].
 void write_vtk_arrays(Hdf5File& file, const Model& model);
 
-/// Lists all that a model file stores, once for writing and reading. Derived arrays (nodes) are not stored.
+/// Lists all arrays that a model file stores, once for writing and reading. Nodes are derived and therefore not stored.
 template <class Archive, class AnyModel>
 void exchange_model(Archive& archive, AnyModel& model)
 {

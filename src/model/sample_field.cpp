@@ -14,20 +14,20 @@ namespace
 using Point = std::array<double, 3>;
 using physics::DistanceField;
 
-// Range of distances [m] that a brick must have samples for.
+// Range of distances [m] for which a brick must have samples.
 struct Band
 {
   double least = 1e300, largest = -1e300;
-  bool home = false;  // a node rests in the brick
+  bool home = false;  // whether a node rests in the brick
 };
 
-// Whether the distance is in the band anywhere in a cube, found by halving the cube down to `smallest` [m].
+// Whether the distance is in the band anywhere in a cube. The cube is halved down to the edge `smallest` [m].
 bool reaches(const Distance& distance, const Band& band, const Point& middle, double edge, double smallest)
 {
   const SurfaceDistance d = distance(middle);
   const double radius = 0.5 * std::sqrt(3.0) * edge;
-  // Within the cube, the nearest point may jump to the rim and back, and with it the sign and past_rim. The unsigned
-  // distance changes by at most `radius`.
+  // Within the cube the nearest point may jump to the rim and back, and the sign of the distance and past_rim with it.
+  // The unsigned distance, however, changes by at most `radius`.
   const bool beside_band = d.value < band.least - radius || d.value > band.largest + radius;
   const bool too_far =
       std::hypot(d.value, d.past_rim) > std::max(std::abs(band.least), std::abs(band.largest)) + radius;
@@ -48,7 +48,7 @@ bool reaches(const Distance& distance, const Band& band, const Point& middle, do
   return false;
 }
 
-// Calls visit(index in the table) for the bricks within the distance `way` of a point.
+// Calls visit(index in the table) for the bricks within the distance `way` [m] of a point.
 template <class Visit>
 void visit_bricks(const SampledField& field, const Point& p, double way, const Visit& visit)
 {
@@ -56,7 +56,7 @@ void visit_bricks(const SampledField& field, const Point& p, double way, const V
   std::int32_t first[3], last[3];
   for (int axis = 0; axis < 3; ++axis)
   {
-    // a cell begins half a spacing before its sample
+    // The bounds of a cell are half a spacing from its sample.
     const double x = p[axis] - field.origin[axis] + 0.5 * field.spacing;
     const double count = field.bricks[axis];
     first[axis] = static_cast<std::int32_t>(std::clamp(std::floor((x - way) / edge), 0.0, count));
@@ -68,7 +68,7 @@ void visit_bricks(const SampledField& field, const Point& p, double way, const V
         visit((static_cast<std::size_t>(k) * field.bricks[1] + j) * field.bricks[0] + i);
 }
 
-// An empty table for the box from `lower` to `upper`.
+// A field without samples whose table covers the box from `lower` to `upper`.
 SampledField empty_field(const Point& lower, const Point& upper, double spacing)
 {
   SampledField field;
@@ -81,7 +81,8 @@ SampledField empty_field(const Point& lower, const Point& upper, double spacing)
   return field;
 }
 
-// Index in the table of the brick that is `way` bricks along each axis from the brick at `place`; -1 if there is none.
+// Index in the table of the brick that is `way` bricks along each axis from the brick with the index `place`; -1 if
+// there is none.
 std::ptrdiff_t neighbour(const SampledField& field, std::size_t place, const std::array<int, 3>& way)
 {
   const std::size_t row = place / field.bricks[0];
@@ -99,8 +100,9 @@ std::ptrdiff_t neighbour(const SampledField& field, std::size_t place, const std
 
 constexpr int width = DistanceField::brick_row;
 
-// Calls visit(sample, way) for the samples of a brick. `way`: steps from this brick to the one that owns the cell
-// around the sample. The middle sample of each cubic block comes first, because its search helps those around it.
+// Calls visit(sample, way) for all samples of a brick. `way` points, in bricks, to the brick that owns the cell around
+// the sample. The middle sample of each cubic block comes first, because its result speeds up the searches for the
+// samples around it.
 template <class Visit>
 void visit_samples(const Visit& visit)
 {
@@ -118,7 +120,8 @@ void visit_samples(const Visit& visit)
         }
 }
 
-// Samples the bricks in which the distance reaches the brick's band. Samples that bricks share are found once.
+// Samples the bricks in which the distance reaches the brick's band. A sample that several bricks share is computed
+// once.
 void fill(SampledField& field, const std::vector<Band>& bands, const Distance& distance, const Loop& loop)
 {
   const double spacing = field.spacing, edge = DistanceField::brick_edge * spacing;
@@ -126,7 +129,7 @@ void fill(SampledField& field, const std::vector<Band>& bands, const Distance& d
   for (std::size_t b = 0; b < bands.size(); ++b)
     if (bands[b].least < bands[b].largest)
       places.push_back(b);
-  // the place at lattice coordinates (i, j, k) of a brick, which may be between two samples
+  // The point at lattice coordinates (i, j, k) of a brick; they need not be whole numbers.
   const auto point_of = [&](std::size_t place, double i, double j, double k)
   {
     const std::size_t row = place / field.bricks[0];
@@ -144,7 +147,7 @@ void fill(SampledField& field, const std::vector<Band>& bands, const Distance& d
          wanted[n] =
              band.home || reaches(distance, band, point_of(places[n], middle, middle, middle), edge, spacing) ? 1 : 0;
        });
-  std::vector<std::size_t> stored;  // indices in the table
+  std::vector<std::size_t> stored;  // indices into the table
   for (std::size_t n = 0; n < places.size(); ++n)
     if (wanted[n] != 0)
     {
@@ -219,7 +222,7 @@ SampledField sample_field(const std::vector<Point>& rest, const Distance& distan
     visit_bricks(field, rest[n], 0, [&](std::size_t brick) { bands[brick].home = true; });
   }
   fill(field, bands, distance, loop);
-  // the distance from an open sheet jumps where the nearest point does
+  // The distance from an open sheet jumps where the nearest point jumps from one place to another.
   limit_slope(field);
   return field;
 }

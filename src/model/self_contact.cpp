@@ -31,7 +31,7 @@ void check(const Model& model)
   }
 }
 
-// Writes or reads the self-contacts of a model file. A model without any stores nothing.
+// Writes or reads the self-contacts of a model file. The file of a model without them has no arrays for them.
 template <class Archive, class Contacts>
 void exchange(Archive& archive, Contacts& contacts)
 {

@@ -33,7 +33,7 @@ void check(const Model& model)
   }
 }
 
-// Writes or reads them in a model file. A model without any stores nothing.
+// Writes or reads the shells of a model file. The file of a model without shells has no arrays for them.
 template <class Archive, class Shells>
 void exchange(Archive& archive, Shells& shells)
 {

@@ -39,7 +39,7 @@ void write_geometry(Hdf5File& file, const Model& model)
   file.write("/VTKHDF/Types", std::vector<std::uint8_t>(model.voxels.size(), vtk_voxel));
 }
 
-// index of the largest of the values [begin, end) that are above 0; -1 if none is
+// Index of the largest positive value among the entries [begin, end); -1 if no value is positive.
 std::int32_t largest(const std::vector<float>& values, std::int32_t begin, std::int32_t end)
 {
   const auto found = std::max_element(values.begin() + begin, values.begin() + end);
@@ -73,8 +73,8 @@ void write_cell_data(Hdf5File& file, const Model& model)
 
 void write_point_data(Hdf5File& file, const Model& model)
 {
-  // constraint: 0 free, 1 rigid, 2 sliding, 3 prescribed, 4 attached; held_by: index of the constraint, or, after all
-  // constraints, of the load that prescribes it; -1: none
+  // `constraint`: 0 free, 1 rigid, 2 sliding, 3 prescribed, 4 attached. `held_by`: index of the constraint that
+  // restricts the node; for a prescribed node, the number of constraints plus the index of the load; -1: none.
   std::vector<std::uint8_t> constraint(model.nodes.size(), 0);
   std::vector<std::int32_t> held_by(model.nodes.size(), -1);
   std::vector<float> distance(model.nodes.size(), 0);

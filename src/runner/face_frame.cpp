@@ -32,7 +32,8 @@ Vector vector_of(const std::array<double, 3>& a) { return { a[0], a[1], a[2] }; 
 BodyFrame in_face_frame(const Model& model, const Reaction& local, const RigidTransform& pose)
 {
   const std::array<double, 3> origin = inverse(model.to_face).translation;
-  // moves the moment from the origin of the local frame to that of the face frame, both carried by the body
+  // Moves the reference point of the moment from the origin of the local frame to that of the face frame. Both are
+  // fixed to the body.
   const Vector about_face = vector_of(local.moment) - cross(vector_of(pose.turned(origin)), vector_of(local.force));
   return { { model.to_face.turned(local.force),
              model.to_face.turned(std::array<double, 3>{ { about_face.x, about_face.y, about_face.z } }) },
@@ -56,7 +57,7 @@ std::vector<BodyFrame> bodies_in_face_frame(const Solver& solver, const Model& m
   const std::vector<Reaction> reactions = solver.reactions();
   const std::vector<TouchedBody> touched = touched_bodies(model);
   std::vector<RigidTransform> poses = solver.bodies();
-  // a backend without pushed bodies returns no poses: bodies are where their bones are
+  // A backend without pushed bodies returns no poses. Its bodies move with their bones.
   for (std::size_t c = poses.size(); c < reactions.size(); ++c)
     poses.push_back(touched[c].bone < 0 ? RigidTransform() : solver.controls().bone[touched[c].bone]);
   std::vector<BodyFrame> bodies;

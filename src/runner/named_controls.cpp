@@ -33,7 +33,7 @@ std::size_t index_of(const std::vector<std::string>& names, const std::string& n
   return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
 }
 
-// a share of a bone's pose as a motion in the local frame
+// Converts a fraction of a bone's pose to a motion in the local frame.
 RigidTransform motion_of(const Model& model, const Model::BonePose& pose, double share)
 {
   std::array<double, 3> turn{}, shift{}, from_centre{};
@@ -47,7 +47,7 @@ RigidTransform motion_of(const Model& model, const Model::BonePose& pose, double
   return composed(inverse(model.to_face), composed(in_face, model.to_face));
 }
 
-// The share of a one-sided pose that a muscle or bone gets: 1 on that side, half if it has no side, else 0.
+// Fraction of a one-sided pose that a muscle or bone gets: 1 on that side, half if it belongs to no side, else 0.
 double share_of_side(const std::string& name, const std::string& side)
 {
   const auto is_of = [&](const char* end) { return boost::algorithm::ends_with(name, end); };
@@ -56,7 +56,7 @@ double share_of_side(const std::string& name, const std::string& side)
   return is_of(side.c_str()) ? 1 : is_of("_left") || is_of("_right") ? 0 : 0.5;
 }
 
-// adds a pose by its name, or by its name with _left or _right; false if there is none
+// Adds a pose by its name, or by its name with _left or _right. Returns false if there is no such pose.
 bool add_pose(const Model& model, const std::vector<Model::Expression>& poses, const std::string& name,
               double intensity, Controls& controls)
 {
@@ -76,8 +76,9 @@ bool add_pose(const Model& model, const std::vector<Model::Expression>& poses, c
   return false;
 }
 
-// Splits an action unit with one of FACS's letters, A (trace) to E (maximum), such as AU12C or AU12C_left, into its
-// name without the letter and the letter's share of the full intensity: 1 to 5 fifths. Other names have the share 1.
+// Splits the name of an action unit with a FACS letter from A (trace) to E (maximum), such as AU12C or AU12C_left, into
+// the name without the letter and the letter's fraction of the full intensity, 1 to 5 fifths. Other names have the
+// fraction 1.
 std::pair<std::string, double> without_letter(const std::string& name)
 {
   const std::size_t digit = name.find_last_of("0123456789");

@@ -7,7 +7,7 @@ namespace frontalis
 namespace
 {
 
-// the profile that the model was baked with; null if its cost was not measured
+// The profile that the model was baked with; null if its cost was not measured.
 const Model::AccuracyProfile* present_profile(const Model& model)
 {
   for (const Model::AccuracyProfile& profile : model.profiles)

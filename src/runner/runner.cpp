@@ -22,7 +22,7 @@ Runner::Runner(std::shared_ptr<const Model> model, const RunnerSettings& setting
   self_->solver = make_solver(self_->model, settings.solver);
   if (settings.guard)
     self_->guard = std::make_unique<Guard>(*self_->solver, self_->model, *settings.guard);
-  // a frame that must not be late takes the latest lines that are ready
+  // At the pace of real time a frame must not be late, so that it uses the latest lines that are ready.
   self_->fine_lines = FineLines::make(self_->model, settings.pace == Pace::real_time);
   self_->target = self_->solver->controls();
   self_->effects = self_->solver->effects();

@@ -13,7 +13,8 @@
 namespace frontalis
 {
 
-/// The runner's state. runner.cpp has what the callers' threads do, runner_loop.cpp what the runner's own thread does.
+/// The runner's state. runner.cpp has the functions that callers' threads run, runner_loop.cpp those of the runner's
+/// own thread.
 struct Runner::Implementation
 {
   using Clock = std::chrono::steady_clock;
@@ -24,18 +25,18 @@ struct Runner::Implementation
   OnFrame on_frame;
   std::unique_ptr<Solver> solver;
   std::unique_ptr<Guard> guard;           ///< null: the motion is not checked
-  std::unique_ptr<FineLines> fine_lines;  ///< null: the skin has none
+  std::unique_ptr<FineLines> fine_lines;  ///< null: the skin has no fine lines
 
-  // shared with the callers' threads and protected by the mutex
+  // The following members are shared with the callers' threads and protected by the mutex.
   mutable std::mutex mutex;
   std::condition_variable wake;
   Controls target;
   bool stop = false;
   bool paused = false;
   bool reset_wanted = false;
-  bool cancel_wanted = false;  ///< ends the call of step() under way
+  bool cancel_wanted = false;  ///< ends the call of step() that is under way
   std::uint64_t resets_done = 0;
-  std::string reset_error;  ///< why the latest reset failed; empty if it did not
+  std::string reset_error;  ///< why the latest reset failed; empty if it succeeded
   struct StepRequest
   {
     double seconds = 0;
@@ -53,22 +54,22 @@ struct Runner::Implementation
   };
   SwitchRequest* switch_request = nullptr;
   EffectSet effects;
-  std::mutex switch_mutex;  ///< held by the caller that switches an effect, so that there is one request at a time
+  std::mutex switch_mutex;  ///< held while an effect is switched, so that there is one request at a time
 
-  // used by the runner's thread alone
+  // The following members are used by the runner's thread alone.
   Frame frame;
   FrameClock clock;
   Clock::time_point deadline{};  ///< wall time at which the present frame ends
   Clock::time_point start = Clock::now();
   Clock::time_point last_monitor{};
-  Profile last_profile;  ///< of the solver, at the latest renewal of the monitor
+  Profile last_profile;  ///< of the solver at the latest renewal of the monitor
   std::thread thread;
 
   /// Wall time per frame [s].
   double period() const { return 1 / frame_rate; }
-  /// Simulated time times Model::time_scaling, as for activations and frames [s].
+  /// Simulated time multiplied by Model::time_scaling, the time of activations and frames [s].
   double time() const { return solver->time() * model->time_scaling; }
-  /// Simulated duration of a slice [s], in which the solver does not look at requests or at the wall clock.
+  /// Simulated duration of a slice [s]. The solver does not look at requests or at the wall clock within a slice.
   double slice() const;
 
   void advance(double seconds, const Controls& controls);

@@ -12,13 +12,13 @@ namespace frontalis
 namespace
 {
 
-// time steps per slice: few enough that requests do not wait, and enough that reading the clock and taking the mutex
-// once per slice cost little
+// Time steps per slice. There are few enough that requests do not wait long, and enough that reading the clock and
+// locking the mutex once per slice cost little.
 constexpr int steps_per_slice = 32;
-// wall time between computations of the energies and volume ratios
+// Wall time between two computations of the energies and volume ratios.
 constexpr std::chrono::seconds monitor_period(1);
 
-// whether two poses of a bone differ too little to be seen: below 1e-5 rad and 1e-6 m
+// Whether the difference between two poses of a bone is too small to be seen: below 1e-5 rad and 1e-6 m.
 bool nearly_equal(const RigidTransform& a, const RigidTransform& b)
 {
   const auto within = [](double limit) { return [limit](double x, double y) { return std::abs(x - y) < limit; }; };
@@ -28,7 +28,7 @@ bool nearly_equal(const RigidTransform& a, const RigidTransform& b)
 
 constexpr const char* ended_early = "the step was ended early";
 
-// ends a request, if there is one, with an error for its caller
+// Ends a request, if there is one, with an error for its caller.
 template <class Request>
 void refuse(Request*& request, const std::string& error)
 {
@@ -49,7 +49,8 @@ void Runner::Implementation::fail(const std::string& reason)
   frame.failure = reason;
 }
 
-// Advances time() by `seconds`. If the motion fails, the face stops until it is reset.
+// Advances the face by `seconds` of scaled simulated time, that of time(). If the motion fails, the face stops until it
+// is reset.
 void Runner::Implementation::advance(double seconds, const Controls& controls)
 {
   try
@@ -68,7 +69,7 @@ void Runner::Implementation::advance(double seconds, const Controls& controls)
 void Runner::Implementation::measure_cost()
 {
   const Profile profile = solver->profile();
-  // a reset sets the profile to 0
+  // A reset sets the solver's profile to 0.
   const Profile since = profile.steps < last_profile.steps ? Profile{} : last_profile;
   if (profile.steps > since.steps)
     frame.seconds_per_step = (profile.stepping - since.stepping) / static_cast<double>(profile.steps - since.steps);
@@ -95,7 +96,7 @@ void Runner::Implementation::make_frame(bool renew_monitor)
   {
     SkinState skin;
     solver->skin(skin);
-    // the frame of a step or of a reset waits for its lines, since the face may stand still after it
+    // The frame of a step or of a reset waits for its own fine lines, because the face may stand still after it.
     if (fine_lines)
       fine_lines->add_to(skin, renew_monitor);
     if (is_finite(skin))
@@ -138,7 +139,7 @@ void Runner::Implementation::publish(bool renew_monitor)
 }
 
 // Controls at the end of the next slice. They approach their targets gradually, so that they do not jump within a time
-// step: each slice covers a part of the remaining way, so that a frame covers 95 % of it (1 - exp(-3)).
+// step: a slice covers a fraction of the remaining difference that adds up to 95 % (1 - exp(-3)) per frame.
 Controls Runner::Implementation::controls_after(double seconds) const
 {
   Controls next = target;
@@ -156,7 +157,7 @@ Controls Runner::Implementation::controls_after(double seconds) const
   return next;
 }
 
-// makes steps until the frame's simulated time is reached or its wall time is over, and publishes the frame
+// Makes steps until the frame's simulated time is reached or its wall time is over, and publishes the frame.
 void Runner::Implementation::run_frame()
 {
   const auto length = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(period()));
@@ -213,12 +214,12 @@ void Runner::Implementation::serve_step(StepRequest& request)
   request.frame = frame;
 }
 
-// the caller holds the mutex
+// The caller must hold the mutex.
 void Runner::Implementation::serve_switch(SwitchRequest& request)
 {
   try
   {
-    // check first, so that the guard does not save a state that went bad since the latest check
+    // The state is checked first, so that the guard does not save one that became unstable since the latest check.
     if (guard && !frame.failed)
       guard->check();
   }
@@ -242,7 +243,7 @@ void Runner::Implementation::serve_switch(SwitchRequest& request)
   wake.notify_all();
 }
 
-// the caller holds the mutex
+// The caller must hold the mutex.
 void Runner::Implementation::refuse_requests(const std::string& error)
 {
   refuse(step_request, error);
@@ -289,7 +290,7 @@ void Runner::Implementation::serve_until_stopped()
           continue;
       }
       std::swap(reset_now, reset_wanted);
-      // also ends a step() that was requested before the reset but has not begun
+      // This also ends a step() that was requested before the reset but has not begun.
       if (reset_now)
       {
         refuse(step_request, ended_early);
@@ -318,7 +319,7 @@ void Runner::Implementation::serve_until_stopped()
   }
 }
 
-// an exception of a backend or a listener ends the motion, not the process
+// An exception from a backend or a listener ends the motion but not the process.
 void Runner::Implementation::run()
 {
   for (;;)
@@ -333,7 +334,7 @@ void Runner::Implementation::run()
       std::unique_lock<std::mutex> lock(mutex);
       refuse_requests(frame.failure);
       reset_error = frame.failure;
-      ++resets_done;  // count failed resets too, or their caller would wait for ever
+      ++resets_done;  // failed resets count too, because their callers wait for this number
       wake.wait_for(lock, std::chrono::milliseconds(100), [&] { return stop || reset_wanted; });
     }
 }

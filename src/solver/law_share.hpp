@@ -5,15 +5,15 @@
 namespace frontalis
 {
 
-/// A law other than neo-Hookean of a part of a voxel, in the form that physics/element/ calls.
+/// The part of a voxel that has one law other than neo-Hookean, in the form that physics/element/ reads.
 template <class T>
 struct LawShare
 {
   Law law;
-  T weight;                                ///< fraction times tissue volume [m3]
+  T weight;                                ///< fraction of the voxel's tissue, times tissue volume [m3]
   T at_rest;                               ///< tangent stiffness at rest [Pa]
   T per_tangent;                           ///< LawPart::per_tangent [m]
-  T parameters[physics::parameter_slots];  ///< order: physics/materials/description.hpp
+  T parameters[physics::parameter_slots];  ///< ordered as in physics/materials/description.hpp
 
   FRONTALIS_LAW void add_stress(const physics::Kinematics<T>& k, physics::Matrix3<T>& P) const
   {
@@ -23,7 +23,7 @@ struct LawShare
   {
     return law_stiffening(law, parameters, at_rest, per_tangent, k);
   }
-  /// [J]; 0 in the lanes of a batch whose voxels do not have the law, whatever their parameters are.
+  /// Energy [J]; 0 in lanes of a batch whose voxels do not have the law, whatever parameters these lanes contain.
   FRONTALIS_LAW T energy(const physics::Kinematics<T>& k) const
   {
     using N = physics::Number<T>;

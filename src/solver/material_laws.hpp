@@ -5,8 +5,9 @@
 namespace frontalis
 {
 
-/// Calls visit(solid) or visit(solid, directions) with the law's struct filled from a material's numbers. Neo-Hookean
-/// and the volumetric part, which every voxel has, are left out: kernels compute them separately.
+/// Calls visit(solid) or visit(solid, directions) with the law's struct, filled from a material's numbers. The
+/// neo-Hookean law and the volumetric part are left out, because every voxel has them and kernels compute them
+/// separately.
 template <class T, class Visit>
 FRONTALIS_LAW void visit_law(Law law, const T* numbers, Visit&& visit)
 {

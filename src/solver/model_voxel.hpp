@@ -9,8 +9,9 @@
 namespace frontalis
 {
 
-/// A voxel of the model in double precision, in the form that physics/element/ reads, for the reference backend, the
-/// monitor and the output fields. Only fibres need `activation` and `running`; stresses do not need `grid_scale`.
+/// A voxel of the model in double precision, in the form that physics/element/ reads. The reference backend, the
+/// monitor and the output fields use this class. Only fibres need `activation` and `running`; stresses do not need
+/// `grid_scale`.
 struct ModelVoxel
 {
   const Model& model;
@@ -55,7 +56,7 @@ struct ModelVoxel
   double law_stiffening(const physics::Kinematics<double>& k) const { return physics::law_stiffening(*this, k); }
   double stiffness_now(const physics::Kinematics<double>& k) const { return physics::stiffness_now(*this, k); }
 
-  /// One fibre entry of the model.
+  /// The fibres of one entry of the model's list of fibres.
   physics::Fibre<double, double> fibre(std::int32_t entry) const
   {
     const auto& a = model.fibre_direction[entry];

@@ -24,7 +24,8 @@ RigidTransform interpolate(const RigidTransform& from, const RigidTransform& to,
 {
   if (from.rotation == to.rotation && from.translation == to.translation)
     return to;  // the formula would move it by rounding errors
-  // axis and angle of the rotation from `from` to `to`; Rodrigues' formula applies the fraction of it
+  // Finds the axis and angle of the rotation from `from` to `to`. Rodrigues' formula then applies the fraction of the
+  // angle.
   const auto& a = from.rotation;
   const auto& b = to.rotation;
   double r[3][3];
@@ -38,7 +39,8 @@ RigidTransform interpolate(const RigidTransform& from, const RigidTransform& to,
   double axis[3] = { 1, 0, 0 };
   if (angle > 3)
   {
-    // close to half a turn the sine is small; the symmetric part of r less the cosine is a multiple of axis * axis
+    // Close to half a turn the sine is small. There the axis follows from the symmetric part of r less the cosine,
+    // which is a multiple of axis * axis^T.
     int k = 0;
     for (int i = 1; i < 3; ++i)
       k = r[i][i] > r[k][k] ? i : k;
@@ -68,7 +70,8 @@ RigidTransform interpolate(const RigidTransform& from, const RigidTransform& to,
     }
     along += axis[i] * shift[i];
   }
-  // of the relative translation, the part along the axis is scaled; the rest follows the turn about the screw's axis
+  // The part of the relative translation along the axis is multiplied by the fraction; the rest turns about the screw's
+  // axis.
   const double chord = angle > 1e-9 ? std::sin(part / 2) / std::sin(angle / 2) : fraction;
   const double ahead = chord * std::cos((angle - part) / 2), aside = chord * std::sin((angle - part) / 2);
   for (int i = 0; i < 3; ++i)
@@ -120,7 +123,7 @@ RigidTransform inverse(const RigidTransform& pose)
 
 RigidTransform rigid_motion(const std::array<double, 3>& rotation, const std::array<double, 3>& translation)
 {
-  // Rodrigues' formula
+  // Rodrigues' formula gives the matrix of a rotation vector.
   const double angle = std::sqrt(rotation[0] * rotation[0] + rotation[1] * rotation[1] + rotation[2] * rotation[2]);
   RigidTransform motion;
   motion.translation = translation;
@@ -154,7 +157,7 @@ double farthest_way(const RigidTransform& from, const RigidTransform& to, const 
 
 double fastest_way(const RigidTransform& from, const RigidTransform& to, const std::array<double, 3>& corner)
 {
-  // pieces so short that chord and arc differ by at most 1 % in half a turn
+  // The path is divided into pieces so short that a chord differs from its arc by at most 1 % in half a turn.
   constexpr int pieces = 8;
   double fastest = 0;
   RigidTransform before = from;

@@ -1,4 +1,4 @@
-// The GPU's code for points of contact, run by the host: it needs a CUDA toolkit but no GPU.
+// The GPU's code for points of contact, run on the host. The test needs a CUDA toolkit but no GPU.
 #include <gtest/gtest.h>
 
 #if __has_include(<cuda_runtime.h>) && defined(__x86_64__)
@@ -21,7 +21,8 @@ namespace
 constexpr double dt = 20e-6;
 constexpr int steps = 2000;
 
-// The points of contact of a model whose nodes follow prescribed paths, computed by the host's code and the GPU's code.
+// The points of contact of a model whose nodes follow prescribed paths, computed by the host's code and by the GPU's
+// code.
 class TwoWays
 {
 public:
@@ -56,7 +57,7 @@ public:
   TwoWays(const TwoWays&) = delete;
   TwoWays& operator=(const TwoWays&) = delete;
 
-  // A wave goes through the tissue while the finger presses, strokes and leaves.
+  // A wave passes through the tissue while the finger presses, strokes and leaves.
   void step(int number)
   {
     const ConstraintStep now{ (number + 1) * dt, dt, number * dt, bones(number + 1), bones(number) };
@@ -95,7 +96,8 @@ public:
       }
       const Push push = find_push(g_, points_[p], { static_cast<std::uint32_t>(p), 0, true, moved });
       touching += push.free_way > 0 ? 0 : 1;
-      // a point may be skipped until it and the body have moved as far as its last push guarantees no contact
+      // A point may be skipped until it and the body together have moved by the distance that its latest evaluation
+      // returned.
       Look& look = looks_[p];
       const bool skipped = double(norm(moved - look.moved)) < look.until - way_;
       EXPECT_FALSE(skipped && push.free_way == 0);
@@ -114,7 +116,7 @@ public:
     const double* const old[3] = { before[0].data(), before[1].data(), before[2].data() };
     host.after_step(all, old, pointers().data());
   }
-  // work of bodies and energy lost to friction [J]
+  // Work of bodies and energy lost to friction [J].
   std::array<double, 2> energies(HostContact& of)
   {
     EnergyLedger ledger = empty_ledger();

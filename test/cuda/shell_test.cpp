@@ -70,7 +70,8 @@ TEST_F(ShellModel, MovesAsTheReferenceDoes)
       EXPECT_NEAR(cuda.landmarks[l][axis], reference.landmarks[l][axis], 1e-5);
 }
 
-// The model has no sliding: backends replace tangent planes at different times, which moves the skin by micrometres.
+// The model has no sliding nodes, because backends replace their planes at different times, which moves the skin by
+// micrometres.
 TEST_F(ShellModel, IsAsPreciseAsTheCpuWithoutSliding)
 {
   Model model = *model_;

@@ -1,4 +1,4 @@
-// The GPU's code for sliding nodes, run by the host: it needs a CUDA toolkit but no GPU.
+// The GPU's code for sliding nodes, run on the host. The test needs a CUDA toolkit but no GPU.
 #include <gtest/gtest.h>
 
 #if __has_include(<cuda_runtime.h>) && defined(__x86_64__)
@@ -31,7 +31,7 @@ SampledField sampled()
   return sample_field({ rest }, distance, 0.5e-3, 20e-3);
 }
 
-// One sliding node, on a fixed surface or on one that moves with a bone.
+// One sliding node, on a surface that stands still or on one that moves with a bone.
 class OneNode
 {
 public:
@@ -68,7 +68,7 @@ public:
   OneNode(const OneNode&) = delete;
   OneNode& operator=(const OneNode&) = delete;
 
-  // lets the bone turn about the z axis [rad/s]
+  // Lets the bone turn about the z axis [rad/s].
   void turn(double rate)
   {
     poses_.clear();
@@ -93,7 +93,7 @@ public:
     return 0.5 * (std::pow(double(state.v[0]), 2) + std::pow(double(state.v[1]), 2) + std::pow(double(state.v[2]), 2));
   }
   double moved() const { return std::hypot(double(state.u[0]), double(state.u[1]), double(state.u[2])); }
-  // distance of the node after `number` steps from the sphere on which it started [m]
+  // Distance of the node after `number` steps from the sphere on which it started [m].
   double off_level(int number) const
   {
     const physics::Vec3<double> p =
@@ -116,7 +116,7 @@ private:
   StepArguments g_{};
 };
 
-// calls body(field, glides) for a sampled field and a closed form, each on a fixed surface and on a bone (`glides`)
+// Calls body(field, glides) for a sampled field and a closed form, each on a still surface and on a bone (`glides`).
 template <class Body>
 void each_kind(const Body& body)
 {
@@ -190,7 +190,7 @@ TEST(SlidingNodesOfTheGpu, RubAgainstABoneThatTurns)
   EXPECT_LT(std::abs(node.off_level(steps)), 0.1e-6);
 }
 
-// A node beyond the samples continues on its latest plane.
+// A node beyond the samples stays on its latest plane.
 TEST(SlidingNodesOfTheGpu, KeepTheirPlanePastTheRim)
 {
   const SampledField field = sampled();

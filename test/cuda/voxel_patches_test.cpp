@@ -14,7 +14,7 @@ using namespace frontalis;
 namespace
 {
 
-// Traces everything that the kernel reads from the patches back to the model's voxels and nodes.
+// Checks that all data that the kernel reads from the patches belong to the right voxels and nodes of the model.
 void check_patches(const Model& model, const PatchSettings& settings, const BoundWork& bound = {})
 {
   const VoxelPatches patches(model, settings, bound);
@@ -105,7 +105,7 @@ TEST(VoxelPatches, HaveTheNodesOfVoxelsBesideTheirOwn)
   const Model block = test::block_model(s);
   BoundWork bound;
   bound.beside.resize(block.voxels.size());
-  // some of them far away
+  // Some of these voxels are far away.
   for (std::size_t e = 0; e < bound.beside.size(); e += 3)
     for (const std::size_t other : { (e + 20) % bound.beside.size(), e / 2 })
     {

@@ -16,7 +16,7 @@ namespace
 
 constexpr int lanes = 32;
 
-// A thin curved layer of voxels with a hole. It has short and long rows in x, and pieces that share a warp.
+// A thin curved layer of voxels with a hole. It has short and long rows along x, and pieces that share a warp.
 Model shell()
 {
   test::BlockSettings s;
@@ -29,7 +29,7 @@ Model shell()
   return test::block_model(s);
 }
 
-// Compares the corners of each voxel in the strips with those of the model.
+// Compares the corners of each voxel in the strips with those in the model.
 void check_strips(const Model& model, const StripSettings& settings)
 {
   const VoxelStrips strips(model, settings);
@@ -49,7 +49,7 @@ void check_strips(const Model& model, const StripSettings& settings)
     const Strip& strip = strips.strips[s];
     const auto place = [&](std::uint32_t plane, int row, int lane) -> const StripSlot&
     { return strips.slots[strip.slot_begin + (plane * (rows + 2) + row) * lanes + lane]; };
-    // for each node that the strip owns, the voxels around it that its lane can read
+    // For each node that the strip owns, the voxels around it that the node's lane can read.
     std::map<std::uint32_t, std::set<std::uint32_t>> voxels_of;
     for (std::uint32_t plane = 0; plane < strip.planes; ++plane)
       for (int row = 0; row < rows + 2; ++row)
@@ -80,7 +80,7 @@ void check_strips(const Model& model, const StripSettings& settings)
         EXPECT_EQ(std::count(model.voxel_nodes[voxel].begin(), model.voxel_nodes[voxel].end(),
                              static_cast<std::int32_t>(entry.first)),
                   1);
-    // every voxel around a node that the strip owns is present
+    // Every voxel around a node that the strip owns is present.
     for (const auto& entry : voxels_of)
       EXPECT_EQ(entry.second.size(), static_cast<std::size_t>(valence[entry.first]));
   }
@@ -88,7 +88,7 @@ void check_strips(const Model& model, const StripSettings& settings)
     EXPECT_EQ(owners[n], 1) << "node " << n;
 }
 
-// Adds a fibre to every n-th voxel along x, n = `every`.
+// Adds a fibre to every n-th voxel along x, with n = `every`.
 Model with_fibres(Model model, int every)
 {
   Muscle muscle;
@@ -133,7 +133,7 @@ TEST(VoxelStrips, FillALargeBlock)
   test::BlockSettings s;
   s.voxels = { { 89, 31, 31 } };
   const VoxelStrips strips(test::block_model(s), { 4, 64 });
-  // there are 90 columns, of which strips own 31, 30 and 29
+  // There are 90 columns, of which strips own 31, 30 and 29.
   EXPECT_GT(strips.filled(), 0.9);
 }
 

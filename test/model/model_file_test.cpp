@@ -194,7 +194,7 @@ TEST_F(ModelFile, AnotherVersionIsRefusedWithBothNumbers)
 {
   write_model(full_block(2, 2, 2), path("a.vtkhdf"));
   std::string content = bytes(path("a.vtkhdf"));
-  // bytes of the attribute: name padded to 24 bytes, type (16), shape of a scalar (8), value
+  // Bytes of the attribute: name padded to 24 bytes, type (16), shape of a scalar (8), value.
   const std::size_t name = content.find("model_file_version");
   ASSERT_NE(name, std::string::npos);
   const std::size_t at = name + 24 + 16 + 8;
@@ -227,7 +227,7 @@ TEST_F(ModelFile, AnotherSceneOrPackageIsRefusedWhereOneIsAskedFor)
   const std::string other = fault("fedcba9876543210");
   EXPECT_NE(other.find("is of another scene"), std::string::npos) << other;
   EXPECT_NE(other.find("fedcba9876543210"), std::string::npos) << other;
-  // the package's version is a short text near its name
+  // The package's version is a short text near its name.
   std::string content = bytes(path("a.vtkhdf"));
   const Model again = read_model(path("a.vtkhdf"));
   EXPECT_EQ(again.scene_hash, model.scene_hash);
@@ -246,7 +246,7 @@ TEST_F(ModelFile, NothingIsLeftWhenWritingFails)
   EXPECT_THROW(write_model(bad, path("bad.vtkhdf")), Error);
   EXPECT_THROW(write_model(full_block(2, 2, 2), path("no_folder/a.vtkhdf")), Error);
   EXPECT_TRUE(fs::is_empty(folder_));
-  // an existing file stays intact if writing its successor fails
+  // An existing file stays intact if writing its successor fails.
   write_model(full_block(2, 2, 2), path("a.vtkhdf"));
   const std::string before = bytes(path("a.vtkhdf"));
   EXPECT_THROW(write_model(bad, path("a.vtkhdf")), Error);

@@ -51,7 +51,7 @@ TEST(BuildNodes, SharesNodesOnlyWhereVoxelsTouch)
 {
   Model model;
   model.size = { 6, 5, 4 };
-  // two voxels share one corner, another one is far away in the same layer, and the last is two layers above
+  // Two voxels share one corner, a third is far away in the same layer, and the last is two layers above.
   model.voxels = { { 0, 0, 0 }, { 5, 4, 0 }, { 1, 1, 1 }, { 1, 1, 3 } };
   build_nodes(model);
   EXPECT_EQ(model.nodes.size(), 4u * 8u - 1u);

@@ -28,7 +28,7 @@ physics::FieldValue<T> value_at(const SampledField& field, const Vec3<double>& r
   return value;
 }
 
-// A quadratic function, whose slopes and curvature a quadratic spline through its samples reproduces.
+// A quadratic function. A quadratic spline through its samples reproduces its slopes and curvature.
 double quadratic(const Point& p)
 {
   return 0.3 * p[0] - 0.4 * p[1] + 0.5 * p[2] + 8 * p[0] * p[0] - 6 * p[1] * p[2] + 5 * p[2] * p[2] + 4 * p[0] * p[1];
@@ -42,12 +42,12 @@ TEST(SampleField, HasTheSlopesOfAQuadraticFunctionInFloatAndDouble)
   const Vec3<double> rest{ 1e-3, 2e-3, 3e-3 };
   for (int i = -10; i <= 10; ++i)
   {
-    // the points lie on the level set, in several bricks of samples
+    // The points lie on the level set, in several bricks of samples.
     const Vec3<double> moved{ 0.8e-3 * i, 0.6e-3 * i, 0.05e-3 * i };
     const Point p{ { rest.x + moved.x, rest.y + moved.y, rest.z + moved.z } };
     const auto found = value_at<double>(field, rest, moved);
     const double x = p[0], y = p[1], z = p[2];
-    // the spline's value has an offset of the Laplacian times the squared spacing over 8
+    // The spline's value exceeds the function by the Laplacian times the squared spacing divided by 8.
     EXPECT_NEAR(found.value, quadratic(p) + 26 * 0.25e-6 / 8, 1e-8) << i;
     EXPECT_NEAR(found.gradient.x, 0.3 + 16 * x + 4 * y, 5e-5);
     EXPECT_NEAR(found.gradient.y, -0.4 - 6 * z + 4 * x, 5e-5);
@@ -69,7 +69,7 @@ TEST(SampleField, CoversWhereNodesMayComeAndNoMore)
     for (double y = -10e-3; y <= 10e-3; y += 0.9e-3)
       for (const double z : { 0.6e-3, 1.4e-3, 1.6e-3, 2.4e-3 })
       {
-        // samples cover the level z of each of the two nodes, up to the travel of 10 mm from the node
+        // Samples cover the level z of each of the two nodes, up to the travel of 10 mm from the node.
         const bool covered = z < 1.5e-3 ? x < 9.9e-3 : x > -1.9e-3;
         if (covered)
         {
@@ -94,7 +94,7 @@ TEST(SampleField, ALevelPlaneStaysNearTheLevelSetOfASphereAsFarAsItSays)
     const auto here = value_at<double>(field, { rest[0], rest[1], rest[2] }, { 20e-6, 0.4e-3, -0.3e-3 });
     physics::LevelPlane<double> plane{};
     ASSERT_TRUE(physics::level_plane(here, level, plane));
-    // the plane is valid at most as far as the samples of the cell describe the field
+    // The plane is valid at most as far as the samples of the cell describe the field.
     EXPECT_LT(plane.slip, 100e-6);
     EXPECT_GT(plane.slip, field.radius > 0 ? 80e-6 : 15e-6);
     const Vec3<double> along = plane.slip * Vec3<double>{ -plane.normal.y, plane.normal.x, 0 };

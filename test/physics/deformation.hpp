@@ -60,7 +60,7 @@ inline double distance(const Matrix& A, const Matrix& B)
   return largest(difference);
 }
 
-/// Kinematics of a deformation gradient: gradients are modes 1, 2 and 4 of the transformed displacements, with scale 1.
+/// Kinematics of a deformation gradient. Modes 1, 2 and 4 of the transformed displacements are its rows, with scale 1.
 inline Kinematics<double> kinematics_of(const Matrix& F)
 {
   double mode[3][8] = {};
@@ -71,7 +71,7 @@ inline Kinematics<double> kinematics_of(const Matrix& F)
   return kinematics(mode[0], mode[1], mode[2], one);
 }
 
-/// One of a series of random deformation gradients: every third is crushed (J around 0.1), every third inverted.
+/// One of a series of random deformation gradients. Of three in a row one is crushed (J around 0.1) and one inverted.
 inline Matrix random_gradient(std::mt19937& random, int trial)
 {
   std::uniform_real_distribution<double> value(-0.35, 0.35);
@@ -82,7 +82,6 @@ inline Matrix random_gradient(std::mt19937& random, int trial)
   return F;
 }
 
-/// A rotation from a random unit quaternion.
 inline Matrix random_rotation(std::mt19937& random)
 {
   std::normal_distribution<double> normal;

@@ -39,7 +39,7 @@ protected:
           { bound = tangent_stiffness(solid, kinematics_of(F), along...); });
     return bound;
   }
-  /// Rotates the fibre directions of a law that has fibres.
+  /// Rotates the law's fibre directions, if it has any.
   void turn_directions(const Matrix& Q)
   {
     for (int d = 0; d < description_of(GetParam()).directions; ++d)

@@ -54,7 +54,7 @@ TEST(VoxelElement, TransposeIsTheTranspose)
 
 TEST(Hourglass, BendingModeHasTheEnergyOfPureBending)
 {
-  // the energy of u_x = c xi eta on a cube of edge h is the integral of 1/2 E (2c/h eta)^2
+  // The energy of u_x = c xi eta on a cube of edge h is the integral of 1/2 E (2c/h eta)^2.
   const double h = 2e-3, young = 1e5, c = 1e-5;
   double mode[8];
   for (int b = 0; b < 8; ++b)
@@ -75,7 +75,7 @@ TEST(AssumedStrain, ABarBendsWithYoungsModulusAndAPlateIsStifferAlongShortEdges)
   for (int axis = 0; axis < 3; ++axis)
   {
     const AxisBending<double> b = axis_bending(k, weight, axis);
-    // the energy equals that of a strain with free lateral contraction
+    // The energy equals that of a strain with free lateral contraction.
     EXPECT_NEAR(b.own - b.coupled * b.coupled / b.own, young * volume, 1e-12 * young * volume);
     EXPECT_NEAR(b.coupled / b.own, axis == 1 ? nu / 4 : nu, 1e-12);
   }
@@ -83,7 +83,7 @@ TEST(AssumedStrain, ABarBendsWithYoungsModulusAndAPlateIsStifferAlongShortEdges)
 
 TEST(TimeStep, LoneCubeNearIncompressibility)
 {
-  // the critical time step is 0.585 h/c at nu = 0.49
+  // The critical time step is 0.585 h/c at nu = 0.49.
   const double young = 34e3, nu = 0.49, h = 1e-3, density = 1000;
   const double mu = young / (2 * (1 + nu)), kappa = young / (3 * (1 - 2 * nu));
   const double wave = std::sqrt((kappa + 4 * mu / 3) / density);

@@ -40,7 +40,7 @@ TEST_P(EveryLaw, AtRestItIsFreeOfStressAndHasItsShearModulus)
   EXPECT_LT(largest(stress_at(identity())), 1e-9 * modulus);
   Matrix F = identity();
   F.a[2][1] = 1e-6;
-  // with fibres, the modulus in the description may hold for another direction
+  // The modulus in the description of a law with fibres may hold for another direction.
   const double found = stress_at(F).a[2][1] / 1e-6;
   if (description_of(GetParam()).directions == 0)
     EXPECT_NEAR(found, modulus, 1e-4 * modulus);
@@ -100,7 +100,7 @@ TEST(Holzapfel, FibresAreSlackInShearAcrossTheirPlane)
 
 TEST(Guccione, ShearModulusAcrossAFibreAtAnAngle)
 {
-  // with shear in yz and the fibre along (0.8, 0.6, 0), Efs^2 + Efn^2 is (0.6 / 2)^2 times the squared shear
+  // With shear in yz and the fibre along (0.8, 0.6, 0), Efs^2 + Efn^2 is (0.6 / 2)^2 times the squared shear.
   Matrix F = identity(), P{};
   F.a[2][1] = 1e-6;
   const Vec3<double> fibre[1] = { { 0.8, 0.6, 0 } };

@@ -33,7 +33,7 @@ TEST(MuscleFibre, PassiveTensionStartsAtOneAndGoesOnSmoothly)
 
 TEST(MuscleFibre, SecondPiolaStressOfTheCauchyStress)
 {
-  // the Cauchy stress along the fibre is S stretch^2 / J
+  // The Cauchy stress along the fibre is S stretch^2 / J.
   const double stretch = 0.9, J = 0.98, reference = 0.3e6, activation = 0.6;
   const double S = fibre_stress(stretch * stretch, J, reference, activation, 1.0, 0.0);
   EXPECT_NEAR(S * stretch * stretch / J, reference * activation * active_tension(stretch) * stretch, 1e-6);
@@ -57,7 +57,8 @@ TEST(MuscleFibre, SlopeBoundsOfTheNominalStressHoldAndAreReached)
   EXPECT_GE(passive, 0.99 * passive_slope_bound);
 }
 
-// The stiffness is the quadratic form of the second derivatives of J f(l) in dF, over |dF|^2, at full activation.
+// The stiffness here is the quadratic form of the second derivatives of J f(l) in dF, divided by |dF|^2, at full
+// activation.
 TEST(MuscleFibre, WhatTheTimeStepAllowsForHoldsForAnyStretchesUpToTwoAndAHalf)
 {
   std::mt19937 random(1);

@@ -19,7 +19,7 @@ Matrix first_piola(const NeoHookean<double>& material, const Matrix& F)
   return P;
 }
 
-// nu = 0.49, mu = 1
+// A material with nu = 0.49 and mu = 1.
 const NeoHookean<double> material{ 1.0, 2.0 * 1.49 / (3.0 * 0.02) };
 
 void expect_gradient_of_energy(const Matrix& F)
@@ -53,7 +53,7 @@ TEST(NeoHookean, StressIsTheGradientOfTheEnergyAlsoWhereCrushedAndInverted)
   }
 }
 
-// The rounding error of a float near 1 is 1 % of a strain of 1e-5, and the bulk modulus magnifies it 50 times.
+// The rounding error of a float near 1 is 1 % of a strain of 1e-5, and the bulk modulus magnifies this error 50 times.
 TEST(NeoHookean, FloatKeepsThePressureOfSmallStrains)
 {
   const double gradient[3][3] = { { 1.1e-5, 0.4e-5, -0.3e-5 },
@@ -76,14 +76,14 @@ TEST(NeoHookean, FloatKeepsThePressureOfSmallStrains)
 
 TEST(NeoHookean, UniaxialTable)
 {
-  // uniaxial stretch with free sides; columns: stretch, P11/mu, lateral stretch, J
+  // Uniaxial stretch with free sides. Columns: stretch, P11/mu, lateral stretch, J.
   const double table[7][4] = { { 0.5, -3.480201, 1.405832, 0.988182 }, { 0.7, -1.333561, 1.191455, 0.993695 },
                                { 0.9, -0.332530, 1.053031, 0.997987 }, { 1.1, 0.271538, 0.954416, 1.002001 },
                                { 1.3, 0.701838, 0.879723, 1.006086 },  { 1.5, 1.043711, 0.820731, 1.010399 },
                                { 2.0, 1.718609, 0.715038, 1.022560 } };
   for (const auto& row : table)
   {
-    // find by bisection the lateral stretch at which the sides are free of stress
+    // Find by bisection the lateral stretch at which the sides are free of stress.
     double low = 0.3, high = 2.5;
     for (int i = 0; i < 100; ++i)
     {
@@ -103,7 +103,7 @@ TEST(NeoHookean, SimpleShear)
   Matrix F = diagonal(1, 1, 1);
   F.a[0][1] = shear;
   const Matrix P = first_piola(material, F);
-  // the Cauchy stress is P F^T / J with J = 1
+  // The Cauchy stress is P F^T / J with J = 1.
   const auto cauchy = [&](int i, int j)
   { return P.a[i][0] * F.a[j][0] + P.a[i][1] * F.a[j][1] + P.a[i][2] * F.a[j][2]; };
   EXPECT_NEAR(cauchy(0, 1), shear, 1e-12);

@@ -1,5 +1,5 @@
-// Stress must rotate with the body: P(Q F) = Q P(F) for laws, muscle fibres and relaxed stress. If the material at rest
-// and its fibres are rotated, only the axes may change: P(F Q) with directions Q^T a is P(F) Q.
+// Stress must rotate with the body: P(Q F) = Q P(F) for laws, muscle fibres and relaxed stress. A rotation of the
+// material at rest and of its fibres must only change the axes: P(F Q) with directions Q^T a equals P(F) Q.
 
 #include "frontalis/physics/muscle_fibre.hpp"
 #include "frontalis/physics/viscosity.hpp"
@@ -26,7 +26,6 @@ void for_random_motions(const std::function<void(const Matrix& F, const Matrix& 
   }
 }
 
-// stress of a muscle's fibre along a
 Matrix fibre_stress_at(const Matrix& F, const Vec3<double>& a, double with_length)
 {
   const Vec3<double> along = F * a;
@@ -74,7 +73,7 @@ TEST_P(ObjectiveLaw, RelaxedStressTurnsWithTheBody)
         for (const bool turned : { false, true })
         {
           Symmetric3<double> H{};
-          // the body turns while it relaxes
+          // The body is rotated while it relaxes.
           for (const Matrix& now : { F, turned ? Q * F : F })
             relax(0.4, 0.6, second_piola(kinematics_of(now), stress_at(now)), H);
           const Matrix last = turned ? Q * F : F;

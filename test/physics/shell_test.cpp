@@ -1,4 +1,4 @@
-// the law of a shell: gradient, rigid motions, energies of plates
+// The law of a shell: forces as the gradient of the energy, rigid motions, energies of plates.
 
 #include "frontalis/solver/shell_mesh.hpp"
 
@@ -17,7 +17,7 @@ using Vertices = std::array<Vector, 6>;
 
 constexpr double young = 1e6, poisson = 0.4, thickness = 1e-4, edge = 1e-3;
 
-// an irregular triangle and its neighbours, nearly flat
+// An irregular triangle and its neighbours, nearly flat.
 Vertices patch()
 {
   return { { { 0, 0, 0 },
@@ -58,7 +58,7 @@ Vertices moved(Vertices x, double by, unsigned seed)
   return x;
 }
 
-// rotates a vector about an axis that is not a coordinate axis
+// Rotates a vector about an axis that is not a coordinate axis.
 Vector turned(const Vector& v, double angle)
 {
   const double s = std::sqrt(1.0 / 3);
@@ -138,7 +138,7 @@ TEST(ShellLaw, a_strained_membrane_has_the_energy_of_plane_stress)
 {
   const Vertices rest = patch();
   const ShellMesh::Triangle t = triangle(rest);
-  // unit vectors in the plane of the triangle, and its normal
+  // Unit vectors in the plane of the triangle, and its normal.
   const Vector e1 = (1 / norm(rest[1])) * rest[1], area = cross(rest[1], rest[2]), n = (1 / norm(area)) * area;
   const Vector e2 = cross(n, e1);
   const double a = 0.02, b = -0.05, shear = 0.01;
@@ -154,7 +154,7 @@ TEST(ShellLaw, a_strained_membrane_has_the_energy_of_plane_stress)
   EXPECT_NEAR(forces(t, rest, now).membrane, expected, 1e-9 * expected);
 }
 
-// A triangle of any shape, flat at rest, is bent to a paraboloid with the curvatures k1, k2 along any directions.
+// A triangle of any shape that is flat at rest is bent to a paraboloid with the curvatures k1, k2 along any directions.
 TEST(ShellLaw, a_bent_triangle_has_the_energy_of_a_plate)
 {
   Vertices rest = patch();
@@ -178,7 +178,7 @@ TEST(ShellLaw, a_bent_triangle_has_the_energy_of_a_plate)
     }
 }
 
-// Unless the triangle nearly collapses, no direction is stiffer than the bound at rest.
+// Unless the triangle nearly collapses, its stiffness along any direction is below the bound at rest.
 TEST(ShellLaw, the_bound_of_stiffness_holds_when_stretched_and_compressed)
 {
   const Vertices rest = patch();
@@ -212,7 +212,7 @@ TEST(ShellLaw, the_bound_of_stiffness_holds_when_stretched_and_compressed)
     }
 }
 
-// At an edge where the layer ends, the energy is the least for all heights that a mirrored neighbour could have.
+// At an edge where the layer ends, the energy is the smallest one over all heights of a mirrored neighbour.
 TEST(ShellLaw, no_moment_passes_an_edge_at_which_the_layer_ends)
 {
   Vertices rest = patch();

@@ -32,7 +32,7 @@ struct Mesh
     }
     return out;
   }
-  // the triangle on which the foot is
+  // Finds the triangle that contains the foot, and returns the foot.
   SurfaceFoot<double> foot(const Vector& x) const
   {
     for (std::size_t t = 0; t < triangles.size(); ++t)
@@ -69,8 +69,8 @@ Mesh sphere(double radius)
   return mesh;
 }
 
-// A point slides 1.4 % of an edge below a sphere whose triangles meet at about 7 degrees. Its depth refers to the
-// smooth sphere instead of the triangles, and force and depth do not jump from one triangle to the next.
+// A point slides 1.4 % of an edge below a sphere whose triangles meet at about 7 degrees. Its depth is measured from
+// the smooth sphere instead of the triangles, and force and depth do not jump from one triangle to the next.
 TEST(SurfaceFoot, SlidingOverTrianglesIsSmooth)
 {
   const double radius = 8, depth = 0.014, step = 1e-4;
@@ -124,7 +124,7 @@ TEST(SurfaceFoot, ForcesAreOppositeInSumAndInMoment)
   }
 }
 
-// A point that a triangle carries along follows a rotation, and the forces on the corners are the adjoint of this map.
+// A point that a triangle carries follows a rotation, and the forces on the corners are the adjoint of this map.
 TEST(SurfaceFoot, ATriangleCarriesAPointAlong)
 {
   const Mesh mesh = sphere(3);

@@ -57,7 +57,7 @@ TEST_P(Accuracy, selective_reduced_integration_bends_and_does_not_lock)
     const Equilibrium found = solver->settle({}, 1e-3, 20);
     EXPECT_TRUE(found.reached) << found.residual << " left after " << found.seconds << " s";
     const double exact = -1.5 * 1000 * 0.05 * std::pow(0.1, 4) / (34e3 * 1e-4);
-    // full integration of two linear elements through the thickness is stiff in bending, but far from locked
+    // Full integration of two linear elements through the thickness is stiff in bending, but far from locked.
     EXPECT_GT(tip(*solver, model) / exact, 0.6) << poisson;
     EXPECT_LT(tip(*solver, model) / exact, 1.02) << poisson;
   }
@@ -114,7 +114,8 @@ TEST_P(Accuracy, a_stiff_layer_among_soft_ones_steps_longer_by_the_assembled_bou
   EXPECT_LT(assembled->monitor().kinetic, 2 * early) << "and is stable";
 }
 
-// Mass scaling adds mass to a stiff voxel among soft ones until the time step is allowed. The weight does not change.
+// Mass scaling adds mass to a stiff voxel among soft ones until the wanted time step is allowed. The weight stays the
+// same.
 TEST_P(Accuracy, mass_scaling_up_to_a_wanted_time_step_leaves_weight_alone)
 {
   Model model = cantilever(2, 0.45);

@@ -11,7 +11,6 @@ namespace
 
 constexpr double rest = 4e10;  // bound of the squared frequency at nodes [1/s2]
 
-// a search that records its arguments
 struct Search
 {
   double found = 0.5 * rest;

@@ -13,7 +13,8 @@ using Vectors = std::vector<std::array<double, 3>>;
 namespace
 {
 
-constexpr double edge = 1e-3, surface = 0.4e-3;  // surface: height of the bone's surface, in the lowest row of voxels
+// surface: height of the bone's surface, within the lowest row of voxels
+constexpr double edge = 1e-3, surface = 0.4e-3;
 
 std::array<std::int32_t, 3> above(const std::array<std::int32_t, 3>& node, std::int32_t k)
 {
@@ -90,8 +91,8 @@ protected:
 
 }  // namespace
 
-// The displacement u of a node relative to the bone's motion g is its ratio times that of its master, so that the
-// tissue follows the bone at the surface.
+// The displacement of a node relative to the bone is its ratio times that of its master, so that the tissue follows the
+// bone at the surface.
 TEST_P(Attached, NodesFollowTheirMastersOnABoneThatMoves)
 {
   Model model = held_block(0);
@@ -121,7 +122,7 @@ TEST_P(Attached, NodesFollowTheirMastersOnABoneThatMoves)
   EXPECT_GT(largest, 1e-6) << "the masters move";
 }
 
-// The forces of attached nodes act on their masters: momentum is kept between two parts that a rigid link joins.
+// The forces of attached nodes act on their masters. Momentum is conserved between two parts that a rigid link joins.
 TEST_P(Attached, ForcesAreHandedOnWithoutALossOfMomentum)
 {
   Model model = held_block();
@@ -173,7 +174,7 @@ TEST_P(Attached, EnergiesBalanceOnABoneThatMoves)
   }
 }
 
-// The level of a node stays in proportion to that of its master, wherever the nodes slide.
+// The level of a node stays in proportion to the level of its master, wherever the nodes slide.
 TEST_P(Attached, SlidingNodesKeepTheExtrapolatedSurface)
 {
   for (const bool sampled : { false, true })
@@ -216,7 +217,7 @@ TEST_P(Attached, TheBoundOfTheTimeStepHolds)
   for (const bool slides : { false, true })
   {
     Model model = slides ? sliding_block(false, -1) : held_block();
-    // the lowest voxels have little tissue, like voxels below the bone's surface in a baked model
+    // The lowest voxels have little tissue, like voxels below the bone's surface in a baked model.
     for (std::size_t e = 0; e < model.voxels.size(); ++e)
       if (model.voxels[e][2] == 0)
         model.fill[e] = e % 3 == 0 ? 0.02F : 0.6F;
@@ -262,7 +263,8 @@ TEST(AttachedOnCpu, ThreadsDoNotChangeABit)
   EXPECT_EQ(found[0], found[2]);
 }
 
-// Nodes at fixed surfaces are processed in blocks, nodes at bones one by one; both must give the same motion.
+// Nodes at surfaces that stand still are processed in blocks, nodes at bones one by one. Both must give the same
+// motion.
 TEST(AttachedOnCpu, ABoneThatRestsIsAsGoodAsNone)
 {
   for (const bool sampled : { false, true })

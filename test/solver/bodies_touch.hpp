@@ -46,7 +46,7 @@ inline double mechanical(const EnergyLedger& l)
   return l["kinetic"] + l["internal"] + l["hourglass"] + l["contact_stored"];
 }
 
-// A block with a held lower side, and a fingertip above it that moves with a bone.
+// A block whose lower side is held, and a fingertip above it that moves with a bone.
 inline Model block_and_finger(double friction, bool sampled = false)
 {
   BlockSettings settings;
@@ -80,7 +80,7 @@ inline Model block_and_finger(double friction, bool sampled = false)
   return model;
 }
 
-// Presses the finger in by 0.8 mm and moves it along x by 2 mm while it turns.
+// Presses the finger in by 0.8 mm and moves it along x by 2 mm while it rotates.
 inline void press_and_stroke(Solver& solver, double seconds)
 {
   Controls controls = solver.controls();

@@ -28,7 +28,7 @@ TEST(BoneMotionLimits, keep_bones_from_skipping_voxels)
   EXPECT_NEAR(limits.longest_step(moved(0), moved(speed), 1), 0.1 * edge / speed, 1e-9);
   EXPECT_TRUE(std::isinf(limits.longest_step(moved(speed), moved(speed), 1)));
   EXPECT_TRUE(std::isinf(limits.longest_step({}, {}, 1)));
-  // a rotation moves the far corner along an arc
+  // A rotation moves the far corner along an arc.
   const Poses turned{ rigid_motion({ { 0, 0, 1 } }, { { 0, 0, 0 } }) };
   EXPECT_NEAR(limits.longest_step(moved(0), turned, 1), 0.1 * edge / (4e-3 * std::sqrt(2.0)), 1e-3);
 }
@@ -37,7 +37,8 @@ TEST(BoneMotionLimits, notice_jumps_of_velocity)
 {
   const Model model = test::block_model();
   BoneMotionLimits limits(model);
-  const double felt = 0.005 * edge / speed;  // time step in which the bone moves by the limit, 0.5 % of a voxel [s]
+  // time step in which a bone with this speed moves by the limit, 0.5 % of a voxel [s]
+  const double felt = 0.005 * edge / speed;
   EXPECT_TRUE(limits.jumps(moved(0), moved(speed), 1, 1.01 * felt)) << "it begins to move";
   EXPECT_FALSE(limits.jumps(moved(0), moved(speed), 1, 0.99 * felt));
   limits.moved(moved(0), 1);

@@ -93,7 +93,7 @@ TEST_P(BodiesTouch, contact_is_switched_while_running)
   EXPECT_EQ(displacements(*solver), displacements(*fresh));
 }
 
-// The true frequency stays below the bound, which assumes contact at all points and shortens steps only a little.
+// The true frequency stays below the bound. The bound assumes contact at all points, but shortens steps only a little.
 TEST_P(BodiesTouch, the_time_step_is_that_of_a_model_in_contact)
 {
   Model model = block_and_finger(0), without = model;
@@ -101,7 +101,7 @@ TEST_P(BodiesTouch, the_time_step_is_that_of_a_model_in_contact)
   const double with = make(model)->time_step(), plain = make(without)->time_step();
   EXPECT_LT(with, plain);
   EXPECT_GT(with, 0.97 * plain);
-  // the motion has no damping and the full time step, with contact
+  // The motion has no damping and makes full time steps while in contact.
   model.damping = 0;
   model.time_step_share = 1;
   for (const auto estimate : { TimeStepEstimate::element, TimeStepEstimate::assembled })

@@ -39,7 +39,7 @@ TEST_P(BodiesTouch, samples_of_a_sphere_act_as_the_sphere)
   }
 }
 
-// Friction depends on the history of each point. The plate is a sphere with a radius of 1 km.
+// Friction depends on the history of each point. The plate is a sphere with a radius of 1 km, which is nearly flat.
 TEST_P(BodiesTouch, forces_and_friction_are_those_of_the_reference)
 {
   for (const bool flat : { false, true })
@@ -86,13 +86,13 @@ TEST_P(BodiesTouch, a_body_that_comes_from_far_is_met)
   EXPECT_NEAR(far->reactions()[0].force[2], expected, 1e-3 * expected);
 }
 
-// The edge of a wedge jumps into the tissue by a voxel and out again, after which the tissue returns to its shape.
+// The edge of a wedge jumps into the tissue by a voxel and out again. The tissue then returns to its shape.
 TEST_P(BodiesTouch, a_sharp_edge_jumps_in_and_comes_out)
 {
   Model model = block_and_finger(0.3);
   const auto distance = [](const std::array<double, 3>& p)
   {
-    // a wedge along y whose edge is 0.2 mm above the tissue
+    // A wedge along y whose edge is 0.2 mm above the tissue.
     const double x = std::abs(p[0] - 5.2e-3), z = p[2] - 4.2e-3;
     return z < -x ? std::hypot(x, z) : (x - z) * std::sqrt(0.5);
   };

@@ -1,4 +1,4 @@
-// voxels that are filled in part, with the stress at the centroid of their tissue
+// Voxels that are partly filled, with their stress at the centroid of the tissue.
 
 #include "backends.hpp"
 #include "block_model.hpp"
@@ -66,7 +66,7 @@ protected:
   }
 };
 
-// the highest squared frequency of one voxel over its bound, in a random state of deformation
+// The highest squared frequency of one voxel, divided by its bound, in a random deformation.
 double true_over_bound(const Model& model, double amplitude)
 {
   std::vector<std::size_t> free(24);
@@ -76,7 +76,8 @@ double true_over_bound(const Model& model, double amplitude)
 
 }  // namespace
 
-// Energies use transformed displacements, but forces of the reference use shape functions at the centroid.
+// Energies are found from transformed displacements, but forces of the reference backend from shape functions at the
+// centroid.
 TEST_P(CutVoxels, ForcesAreTheGradientOfTheEnergy)
 {
   for (const auto hourglass : { HourglassControl::scalar, HourglassControl::assumed_strain })
@@ -200,7 +201,7 @@ TEST(CutVoxel, HasNoHigherFrequencyThanTheBound)
   EXPECT_GT(worst, 0.7) << "far too careful";
 }
 
-// The longest step of a flat layer, whose upper voxels are filled in part, is not much below that of whole voxels.
+// In a flat layer whose upper voxels are partly filled, the longest step is not much shorter than with whole voxels.
 TEST(CutVoxel, ShortensTheStepLittle)
 {
   test::BlockSettings settings;

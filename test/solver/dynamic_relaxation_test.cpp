@@ -10,7 +10,7 @@ using namespace frontalis;
 namespace
 {
 
-// Independent masses on springs, displaced from rest. The first oscillator is the slowest.
+// Independent masses on springs, displaced from rest. The first one is the slowest.
 struct Oscillators
 {
   std::vector<double> mass{ 2, 1, 0.5 };
@@ -42,7 +42,7 @@ struct Oscillators
     for (std::size_t n = 0; n < u.size(); ++n)
       out.push_back({ { 0, stiffness[n] * u[n], 0 } });
   }
-  // Mass-weighted norm of the displacement.
+  // Distance from equilibrium divided by the displacement, in mass-weighted norms.
   double left() const
   {
     double apart = 0, there = 0;
@@ -140,7 +140,8 @@ TEST(DynamicRelaxation, does_not_damp_above_what_is_allowed)
   EXPECT_EQ(relaxation.damping(), 3);
 }
 
-// A window ends when the change exceeds rounding errors, after some calls of observe(), or at the end of the motion.
+// A window ends when the change exceeds rounding errors, after a number of calls of observe(), or at the end of the
+// motion.
 TEST(DynamicRelaxation, asks_for_forces_at_the_end_of_windows_alone)
 {
   for (const bool last : { false, true })

@@ -30,7 +30,6 @@ enum SceneEffect : unsigned
   everything = 511
 };
 
-/// Every valid combination of effects.
 inline std::vector<unsigned> every_combination()
 {
   std::vector<unsigned> combinations;
@@ -43,7 +42,8 @@ inline std::vector<unsigned> every_combination()
 /// Height above the plane z = 0 [m].
 inline double height(const std::array<double, 3>& p) { return p[2]; }
 
-/// A model with the given effects, each in its own part. Rows of different lengths give full, half and empty tiles.
+/// A model with the given effects, each in a part of its own. Rows of different lengths give full, half and empty
+/// tiles.
 inline Model scene_of(unsigned effects, HourglassControl hourglass = HourglassControl::scalar,
                       Integration integration = Integration::one_point)
 {
@@ -130,7 +130,7 @@ inline Model scene_of(unsigned effects, HourglassControl hourglass = HourglassCo
 
 using Vectors = std::vector<std::array<double, 3>>;
 
-/// Largest difference of a component, over the largest component of b, or over 1 um if that is larger.
+/// Largest difference of a component, divided by the largest component of b or, if that is larger, by 1 um.
 inline double difference(const Vectors& a, const Vectors& b)
 {
   double worst = 0, largest = 1e-6;

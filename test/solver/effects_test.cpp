@@ -49,7 +49,7 @@ std::vector<const char*> instruction_sets()
     }
     catch (const Error&)
     {
-      // this machine lacks the instruction set
+      // This machine does not have the instruction set.
     }
   return sets;
 }
@@ -68,7 +68,7 @@ TEST(Effects, every_combination_moves_like_the_reference)
   }
 }
 
-// Energies balance for every combination of effects; in models that nothing drives, all terms are rounding errors.
+// Energies balance for every combination of effects. In models that nothing drives, all terms are rounding errors.
 TEST(Effects, every_combination_balances_its_energies)
 {
   for (const Backend& backend : available_backends())

@@ -1,5 +1,5 @@
-// fine lines of a skin's film against the theory of a film on a half-space (Cao & Hutchinson 2012), and how frames get
-// them
+// Compares fine lines of a skin's film with the theory of a film on a half-space (Cao & Hutchinson 2012), and checks
+// how frames get the lines.
 
 #include "film_model.hpp"
 #include "frontalis/solver/fine_lines.hpp"
@@ -24,7 +24,8 @@ constexpr double thickness = test::film_thickness;
 
 double width(const Model& model) { return model.skin.vertices.back()[0]; }
 
-// The skin compressed along the direction at this angle to x. `where` says how much of the strain a place has.
+// The skin, compressed along the direction at this angle to x. `where`: maps a position along this direction to the
+// position up to which the strain has accumulated; null: the strain is uniform.
 Vertices compressed(const Model& model, double strain, double angle = 0,
                     double (*where)(double along, double width) = nullptr)
 {
@@ -34,14 +35,14 @@ Vertices compressed(const Model& model, double strain, double angle = 0,
   for (const auto& p : model.skin.vertices)
   {
     const double along = c * p[0] + s * p[1];
-    // Green-Lagrange strain: (stretch^2 - 1) / 2
+    // The displacement follows from the Green-Lagrange strain (stretch^2 - 1) / 2.
     const double moved = (std::sqrt(1 - 2 * strain) - 1) * (where == nullptr ? along : where(along, w));
     vertices.push_back({ { static_cast<float>(p[0] + c * moved), static_cast<float>(p[1] + s * moved), 0 } });
   }
   return vertices;
 }
 
-// the heights after some frames of the same skin
+// The heights after some frames of the same skin.
 std::vector<float> heights(FilmEquilibrium& film, const Vertices& vertices, int frames = 6,
                            std::vector<float> from = {})
 {
@@ -69,7 +70,8 @@ double amplitude(const Model& model, const std::vector<float>& height)
   return std::sqrt(2 * sum / count);
 }
 
-// Twice the length of all edges across the lines over the number of edges at whose ends the height has different signs.
+// Mean wavelength: twice the length of all edges across the lines, divided by the number of edges with different signs
+// of the height at their ends.
 double wavelength(const Model& model, const std::vector<float>& height, double angle)
 {
   double length = 0, changes = 0;
@@ -109,7 +111,7 @@ TEST(Film, FoldsAtTheWavelengthAndTheAmplitudeOfTheory)
       }
       const double exponent = std::log(found[2] / found[1]) / std::log(4.0);
       EXPECT_NEAR(exponent, 0.5, 0.05);
-      // where the line through the squares of the first two amplitudes is 0
+      // The critical strain is where the line through the squares of the first two amplitudes is 0.
       const double first = found[0] * found[0], second = found[1] * found[1];
       const double critical = (1.1 * second - 1.4 * first) / (second - first);
       EXPECT_NEAR(critical, 1, 0.15);
@@ -126,7 +128,7 @@ TEST(Film, FoldsFromTheCriticalStrainOfTheoryOnAndIsFlatBelowIt)
   const double critical = film_critical_strain(model.film);
   EXPECT_EQ(amplitude(model, heights(film, compressed(model, 0.85 * critical), 1)), 0);
   EXPECT_GT(amplitude(model, heights(film, compressed(model, 1.15 * critical), 20)), 0.2 * thickness);
-  // what is deep already becomes flat again
+  // Lines that are already deep become flat again.
   const std::vector<float> deep = heights(film, compressed(model, 3 * critical));
   EXPECT_LT(amplitude(model, heights(film, compressed(model, 0.85 * critical), 20, deep)), 1e-3 * thickness);
   const std::vector<float> flat = heights(film, compressed(model, 0), 1, deep);
@@ -137,7 +139,7 @@ TEST(Film, AStretchOfTheFilmAtRestDelaysLines)
 {
   Model model = film_model(100);
   model.film.stretch = 0.1;
-  // across the lines the film is stretched too
+  // Across the lines the film is stretched too.
   const double needed = film_critical_strain(model.film) + (1 + model.film.poisson) * model.film.stretch;
   FilmEquilibrium film(model);
   EXPECT_EQ(amplitude(model, heights(film, compressed(model, 0.9 * needed), 1)), 0);
@@ -202,7 +204,7 @@ TEST(FineLines, MoveVerticesAlongTheNormalsAndTiltThese)
   EXPECT_GT(steepest, 0.1);
   EXPECT_GT(lines->seconds(), 0);
 
-  // with a thread of its own a frame has the lines at once only if it waits for them, also after a reset
+  // With a separate thread, a frame has the lines immediately only if it waits for them, also after a reset.
   const auto apart = FineLines::make(model, true);
   for (int times = 0; times < 2; ++times)
   {

@@ -71,7 +71,7 @@ TEST_P(Forces, RigidMotionGivesNone)
   solver_->set_displacements(u);
   Vectors f;
   solver_->internal_forces(f);
-  // errors are measured relative to the forces at a stretch of 1 %
+  // Errors are measured relative to the forces at a stretch of 1 %.
   solver_->set_displacements(affine(model, { { { { 1.01, 0, 0 } }, { { 0, 1, 0 } }, { { 0, 0, 1 } } } }));
   Vectors scale;
   solver_->internal_forces(scale);
@@ -109,7 +109,7 @@ TEST_P(EnergyGradient, IsTheForce)
   s.keep = [](int i, int j, int k) { return !(i == 1 && j == 1 && k == 1); };
   Model model = test::block_model(s);
   model.hourglass = std::get<1>(GetParam());
-  // energies are those of the reference in double precision, forces those of the backend under test
+  // Energies are those of the reference in double precision, forces those of the backend under test.
   const auto energies = make_solver(std::make_shared<const Model>(model), { "reference", 0, 0 });
   const auto solver_ = make_solver(std::make_shared<const Model>(model), { std::get<0>(GetParam()), 0, 0 });
   const Vectors u = random_displacements(model, 2e-4);

@@ -60,7 +60,7 @@ Model shell(const std::array<double, 3>& centre, double friction, bool sampled =
   return model;
 }
 
-// Mean rotation about the ball's axis [rad], without the nodes near that axis.
+// Mean rotation about the ball's axis [rad]; nodes close to that axis are left out.
 double spin(const Model& model, const Vectors& u, const std::array<double, 3>& centre,
             const std::array<double, 3>& shift)
 {
@@ -144,7 +144,7 @@ TEST_P(Gliding, ASurfaceThatTurnsAndTravelsIsFollowedWithoutSpin)
       }
     }
     EXPECT_LT(worst, 5e-6);
-    // the whole body follows the shift
+    // The whole body follows the shift.
     EXPECT_NEAR(mean_x(u), shift[0], 0.05e-3 + (friction > 0 ? 0.1e-3 : 0));
     if (friction > 0)
       EXPECT_GT(spin(model, u, centre, shift), 0.5 * std::sin(angle));
@@ -187,7 +187,6 @@ TEST_P(Gliding, TheLedgerClosesOverSlipAndFriction)
   for (const double friction : { 0.0, 0.4 })
   {
     Model model = shell(centre, friction);
-    // some nodes follow another bone
     for (std::int32_t n = 0; n < 20; ++n)
       model.rigid.push_back({ n, 0 });
     SolverSettings settings{ GetParam(), 0, 0 };
@@ -242,8 +241,9 @@ TEST_P(Gliding, PuttingNodesBackToASurfaceAddsNoEnergy)
     }
 }
 
-// A shell that spins on a ball. Its nodes change planes; turning their velocities to the new planes is part of the
-// reaction. `parts`: the nodes are on three equal balls (rough, smooth, rough bone); otherwise on one rough ball.
+// A shell that spins on a ball. Its nodes change planes; the rotation of their velocities to the new planes is part of
+// the reaction. With `parts`, the nodes are on three equal balls (with friction, without friction, with friction and on
+// a bone), otherwise on one ball with friction.
 class SpinningShell : public Gliding
 {
 protected:
@@ -337,7 +337,7 @@ TEST_P(Gliding, NodesPastTheRimAreCountedAndStopTheMotion)
     model.damping = 0;
     model.bones = { "bone" };
     model.constraint_surfaces[0].bone = follows_a_bone ? 0 : -1;
-    // the plane ends 3 mm in front of the block
+    // The plane ends 3 mm in front of the block.
     const auto plane = [](const auto& p) { return SurfaceDistance(p[2] + 1e-4, std::max(0.0, p[0] - 9e-3)); };
     std::vector<std::array<double, 3>> rest;
     for (const auto& node : model.sliding)

@@ -44,7 +44,7 @@ double farthest(const Vectors& a, const Vectors& b)
   return worst;
 }
 
-// Two planes of nodes are driven through each other; no time step can handle this.
+// Two planes of nodes are driven through each other, which no time step can handle.
 Model crushed()
 {
   test::BlockSettings settings;
@@ -117,7 +117,7 @@ TEST_P(Guarded, motion_goes_on_where_it_was_disturbed)
     EXPECT_EQ(guard.counts().latest, kind) << words_for(guard.counts().latest);
     EXPECT_DOUBLE_EQ(solver->time(), 12e-3);
     EXPECT_LT(farthest(displacements(*solver), expected), 2e-6) << words_for(kind);
-    // the full time step returns after a while without disturbances
+    // The full time step returns after a while without disturbances.
     guard.advance(4e-3, full(*solver, 0.7f));
     EXPECT_NEAR(solver->time_step(), undisturbed->time_step(), 0.1 * undisturbed->time_step());
   }
@@ -191,7 +191,7 @@ TEST_P(Guarded, a_motion_that_no_time_step_helps_is_stopped_and_explained)
       EXPECT_NE(text.find(part), std::string::npos) << part << " in: " << text;
   }
   EXPECT_GE(guard.counts().rollbacks, settings.tries);
-  // the last good state was restored, and the solver can continue from it
+  // The last good state was restored, and the solver can continue from it.
   EXPECT_TRUE(solver->monitor().finite);
   EXPECT_EQ(solver->monitor().inverted, 0);
   EXPECT_LT(solver->time(), 0.02);

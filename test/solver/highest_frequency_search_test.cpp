@@ -38,7 +38,7 @@ struct Chain
   }
   double search(int most_iterations)
   {
-    products = -1;  // so that the evaluation of the forces at u does not count
+    products = -1;  // so that evaluating the forces at u does not count as a product
     return highest_frequency_squared(
         model, discretisation, u,
         [this](const NodalVectors& at, NodalVectors& out)
@@ -56,7 +56,7 @@ struct Chain
         },
         most_iterations, mode);
   }
-  // Exact eigenvalue of a chain held at both ends.
+  // Exact largest eigenvalue of a chain that is held at both ends.
   double exact() const
   {
     const double segments = static_cast<double>(u.size()) - 1;
@@ -69,7 +69,7 @@ struct Chain
 TEST(HighestFrequencySearch, finds_that_of_a_chain)
 {
   Chain chain;
-  // 2000 products suppress the other modes
+  // 2000 products suppress the other modes.
   EXPECT_NEAR(chain.search(2000) / chain.exact(), 1, 5e-3);
   EXPECT_LE(chain.search(2000) / chain.exact(), 1 + 1e-9) << "it comes from below";
   for (const auto n : chain.discretisation.held)
@@ -90,7 +90,7 @@ TEST(HighestFrequencySearch, goes_on_from_the_latest_mode)
 TEST(HighestFrequencySearch, takes_the_curvature_of_laws_out_of_two_products)
 {
   Chain straight, curved;
-  // the stiffness changes noticeably along the displacement of a product
+  // The stiffness changes noticeably over the displacement of a product.
   curved.curvature = 0.1 / mode_amplitude(curved.model);
   EXPECT_NEAR(curved.search(300) / straight.search(300), 1, 0.03);
 }
@@ -122,7 +122,7 @@ TEST(LargestEigenvalue, ends_where_it_has_settled)
   const auto growing = [&](double) { return std::pow(1.001, ++products); };
   largest_eigenvalue(40, 1, growing);
   EXPECT_EQ(products, 40);
-  // values alternate with the sign of the step, so each is compared with the last value of the same sign
+  // Values alternate with the sign of the step, so that each is compared with the last value of the same sign.
   products = 0;
   EXPECT_EQ(largest_eigenvalue(100, 1, [&](double step) { return ++products, step > 0 ? 5.0 : 3.0; }), 5);
   EXPECT_EQ(products, 9);

@@ -39,7 +39,7 @@ TEST(Interpolate, TurnsAboutTheShortestAxis)
 
 TEST(Interpolate, APointThatABoneTurnsAboutStaysAndTheShiftAlongTheAxisIsScaled)
 {
-  // about the point (5, -2) by 0.6 rad, with a shift of 0.8 along the axis
+  // A rotation by 0.6 rad about the point (5, -2), with a shift of 0.8 along the axis.
   RigidTransform to = turn_about_z(0.6, 0);
   to.translation = { { 5 - (5 * std::cos(0.6) + 2 * std::sin(0.6)), -2 - (5 * std::sin(0.6) - 2 * std::cos(0.6)),
                        0.8 } };
@@ -49,7 +49,7 @@ TEST(Interpolate, APointThatABoneTurnsAboutStaysAndTheShiftAlongTheAxisIsScaled)
     EXPECT_NEAR(p[0], 5, 1e-12);
     EXPECT_NEAR(p[1], -2, 1e-12);
     EXPECT_NEAR(p[2], 0.8 * fraction, 1e-12);
-    // a part of a part of the motion is that motion again
+    // A part of a part of the motion is a part of the motion.
     expect_same(interpolate(interpolate(RigidTransform(), to, fraction), to, 0.5),
                 interpolate(RigidTransform(), to, 0.5 + 0.5 * fraction));
   }

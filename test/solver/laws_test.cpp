@@ -150,7 +150,7 @@ TEST_P(Laws, ForcesTurnWithTheBody)
         largest = std::max(largest, std::abs(expected));
         error = std::max(error, std::abs(f_turned[n][i] - expected));
       }
-    // rounding displacements of millimetres to floats changes strain by 1e-7, which the bulk modulus multiplies
+    // Rounding displacements of millimetres to floats changes the strain by 1e-7, which the bulk modulus multiplies.
     EXPECT_LT(error / largest, std::get<0>(GetParam()) == "reference" ? 1e-9 : 1e-4);
   }
 }
@@ -184,7 +184,7 @@ TEST_P(Laws, ComesBackToRestFromALargeDistortion)
 {
   const Model model = mixed_block(std::get<1>(GetParam()), { { 6, 3, 3 } });
   const auto solver_ = solver(model);
-  // moves every node by up to 0.4 voxels, so that some voxels keep little more than half of their volume
+  // Moves every node by up to 0.4 voxels, so that some voxels keep little more than half of their volume.
   solver_->set_displacements(random_displacements(model, 4e-4));
   const Monitor before = solver_->monitor();
   for (int i = 0; i < 10; ++i)
@@ -222,7 +222,7 @@ TEST_P(Laws, CrushedAndInvertedVoxelsPushBack)
           ASSERT_TRUE(std::isfinite(f[n][axis])) << n << " " << axis;
           work += f[n][axis] * u[n][axis];
         }
-      // voxels that return to rest do work
+      // Voxels that return to rest do work.
       EXPECT_GT(work, 0);
     }
 }

@@ -134,7 +134,8 @@ TEST_P(Ledger, closes_for_an_end_that_is_pulled_and_a_side_that_is_pressed)
   EXPECT_GT(ledger["load"], 0);
 }
 
-// Velocities are half a step behind displacements: when the step changes, their first change covers the mean of both.
+// Velocities belong to the middle between two steps. When the step changes, their first change covers the mean of both
+// steps.
 TEST_P(Ledger, closes_where_the_time_step_changes)
 {
   Model model = bar(0);
@@ -157,7 +158,8 @@ TEST_P(Ledger, is_refused_where_it_was_not_asked_for)
 
 FRONTALIS_EVERY_BACKEND(Ledger);
 
-// The motion is bitwise the same with and without a ledger, and the ledger on any number of threads.
+// The motion is bitwise the same with and without a ledger, and the ledger is bitwise the same on any number of
+// threads.
 TEST(LedgerOnCpu, leaves_the_motion_alone_and_does_not_depend_on_threads)
 {
   Model model = bar(20);

@@ -1,4 +1,4 @@
-// Effects of a running solver that are switched off and on, and their memory.
+// Effects that are switched off and on in a running solver, and their memory.
 
 #include "backends.hpp"
 #include "effect_scene.hpp"
@@ -16,7 +16,7 @@ namespace
 
 using namespace test;
 
-// A model with all effects. Each is strong enough to be seen beside the others.
+// A model with all effects. Each is strong enough to be noticed among the others.
 Model whole_scene()
 {
   Model model = scene_of(everything);
@@ -38,7 +38,7 @@ std::vector<Effect> live_effects()
 {
   std::vector<Effect> effects;
   for (const Effect effect : every_effect())
-    // contact and shells have tests of their own, because not every backend has them
+    // Contact and shells have tests of their own, because not every backend has them.
     if (traits_of(effect).not_live[0] == '\0' && effect != Effect::contact && effect != Effect::self_contact &&
         effect != Effect::shell)
       effects.push_back(effect);
@@ -74,7 +74,7 @@ protected:
   }
 };
 
-// Friction requires sliding.
+// Switches an effect. Friction is switched off before sliding, because it requires sliding.
 void switch_live(Solver& solver, Effect effect, bool on)
 {
   if (effect == Effect::sliding && !on)
@@ -82,7 +82,7 @@ void switch_live(Solver& solver, Effect effect, bool on)
   solver.switch_effect(effect, on);
 }
 
-// Each effect changes the motion; otherwise the comparisons below could not fail.
+// Each effect changes the motion. Otherwise the comparisons below could not fail.
 TEST_P(LiveEffects, each_is_felt)
 {
   const auto whole = make(whole_scene());
@@ -139,7 +139,7 @@ TEST_P(LiveEffects, one_that_comes_back_acts_again_without_its_history)
     solver->switch_effect(effect, true);
     if (effect == Effect::viscosity)
     {
-      // no stress has relaxed, so the forces are those of an elastic body of the same shape
+      // No stress has relaxed, so that the forces are those of an elastic body of the same shape.
       Model elastic = whole_scene();
       switch_off(elastic, EffectSet().with(Effect::viscosity));
       const auto other = make(elastic);
@@ -154,7 +154,7 @@ TEST_P(LiveEffects, one_that_comes_back_acts_again_without_its_history)
     }
     go(*solver, 4e-4);
     EXPECT_TRUE(solver->monitor().finite) << name_of(effect);
-    // reset() does not switch effects; the motion from rest equals that of a solver that was never switched
+    // reset() does not switch effects. The motion from rest equals that of a solver that was never switched.
     if (effect == Effect::sliding)
       solver->switch_effect(Effect::friction, true);
     solver->reset();
@@ -231,7 +231,8 @@ TEST_P(LiveEffects, what_is_not_there_or_cannot_be_switched_is_refused)
             "friction needs sliding: switch friction off too, or sliding on");
 }
 
-// A solver that is made without an effect has the memory of a model without the effect, whatever the other effects.
+// A solver that is made without an effect has the same memory as for a model without the effect, whatever its other
+// effects.
 TEST_P(LiveEffects, an_effect_that_was_switched_off_holds_what_one_holds_that_never_was)
 {
   const std::map<Effect, unsigned> bit{ { Effect::viscosity, viscosity },
@@ -263,7 +264,7 @@ TEST_P(LiveEffects, an_effect_that_was_switched_off_holds_what_one_holds_that_ne
   switch_off(off, EffectSet().with(Effect::contraction).with(Effect::fibre_stiffness));
   auto without_fibres = bytes_of(*make(off)),
        never = bytes_of(*make(scene_of(everything & ~(contraction | passive_fibres))));
-  // the memory of controls differs, because muscles keep their names and accept activations
+  // The memory of controls differs, because muscles keep their names and accept activations.
   without_fibres.erase("elasticity: controls");
   never.erase("elasticity: controls");
   EXPECT_EQ(without_fibres, never);
@@ -278,7 +279,7 @@ TEST_P(LiveEffects, what_is_made_on_request_is_listed_from_then_on)
   const auto booked = make_solver(model, settings);
   auto with = bytes_of(*booked), without = bytes_of(*make(*model));
   EXPECT_EQ(without.count("elasticity: account of energies"), 0u);
-  // the ledger needs at least the velocities of each node before and after its update
+  // The ledger needs at least the velocities of each node before and after its update.
   EXPECT_GE(with["elasticity: account of energies"], 6 * sizeof(float) * model->nodes.size());
   if (GetParam() != "cuda")
     return;

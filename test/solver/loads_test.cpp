@@ -9,7 +9,7 @@ using Vectors = std::vector<std::array<double, 3>>;
 namespace
 {
 
-// A square on top of the block, four triangles per voxel, bound to the voxels below it; normals point up.
+// A square on top of the block with four triangles per voxel, bound to the voxels below it. Its normals point up.
 Load top_surface(const Model& model, Load::Kind kind, const std::array<double, 3>& value)
 {
   Load load;
@@ -26,7 +26,7 @@ Load top_surface(const Model& model, Load::Kind kind, const std::array<double, 3
       load.binding.voxel.push_back(voxel(i, j));
       load.binding.coordinates.push_back({ { i == nx ? 1.0f : 0.0f, j == ny ? 1.0f : 0.0f, 1.0f } });
     }
-  // each square has a vertex at its centre, so that each of its nodes gets a quarter of the force
+  // Each square has a vertex at its centre, so that each of its nodes gets a quarter of the force.
   for (int j = 0; j < ny; ++j)
     for (int i = 0; i < nx; ++i)
     {
@@ -43,7 +43,7 @@ Load top_surface(const Model& model, Load::Kind kind, const std::array<double, 3
   return load;
 }
 
-// Fixes the component along an axis on the lower face of this axis.
+// Fixes the displacement along an axis on the lower face of this axis.
 void roller(Model& model, int axis)
 {
   Load load;
@@ -91,7 +91,7 @@ class Loads : public test::EveryBackend
 
 TEST_P(Loads, TractionStretchesAsTheUniaxialTableSays)
 {
-  // P33 / mu = 0.701838 at stretch 1.3; a traction is a first Piola-Kirchhoff stress
+  // P33 / mu is 0.701838 at the stretch 1.3. A traction is a first Piola-Kirchhoff stress.
   test::BlockSettings s;
   const double mu = test::shear_modulus(s);
   const Model model = loaded_block(Load::Kind::traction, { { 0, 0, 0.701838 * mu } }, s);
@@ -101,7 +101,7 @@ TEST_P(Loads, TractionStretchesAsTheUniaxialTableSays)
 
 TEST_P(Loads, PressureFollowsTheArea)
 {
-  // at stretch 0.7 the Cauchy stress is P33 / (lateral stretch)^2
+  // At the stretch 0.7 the Cauchy stress is P33 / (lateral stretch)^2.
   test::BlockSettings s;
   const double mu = test::shear_modulus(s);
   const Model model = loaded_block(Load::Kind::pressure, { { 1.333561 * mu / (1.191455 * 1.191455), 0, 0 } }, s);

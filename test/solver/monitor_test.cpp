@@ -39,7 +39,7 @@ TEST_P(Monitors, agree_with_the_reference)
           const auto solver = make_solver(std::make_shared<const Model>(model), { own ? GetParam() : "reference", 2 });
           solver->set_displacements(random_field(model, size, 1));
           auto velocities = random_field(model, 0.1, 2);
-          // a backend may omit nodes that cannot move
+          // A backend may omit nodes that cannot move.
           for (const auto& node : model.rigid)
             velocities[node.node] = { 0, 0, 0 };
           solver->set_velocities(velocities);
@@ -64,7 +64,7 @@ TEST_P(Monitors, find_voxels_inside_out_and_numbers_that_are_none)
   const Model model = test::block_model(settings);
   const auto solver = this->solver(model, 2);
   Vectors u(model.nodes.size());
-  // pushing one corner of the block through it inverts the voxel there, and no other
+  // Moving one corner of the block through its voxel inverts this voxel and no other.
   u[0] = { { 3.5e-3, 3.5e-3, 3.5e-3 } };
   solver->set_displacements(u);
   const Monitor crushed = solver->monitor();

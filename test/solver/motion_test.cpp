@@ -27,7 +27,7 @@ void prescribe(Model& model, int axis, bool upper, const std::array<bool, 3>& fi
       model.prescribed.push_back({ static_cast<std::int32_t>(n), index });
 }
 
-// Makes x = 0, y = 0 and z = 0 planes of symmetry.
+// Makes the planes x = 0, y = 0 and z = 0 planes of symmetry.
 void symmetry(Model& model)
 {
   for (int axis = 0; axis < 3; ++axis)
@@ -196,7 +196,7 @@ TEST_P(Motion, BonesCarryTheirNodes)
   pose.translation = { { 1e-3, 0, 2e-3 } };
   solver_->advance(0.02, Controls{ {}, { pose } });
   settle(*solver_, Controls{ {}, { pose } }, 0.01, 1e-11, s);
-  // when the block is at rest again, all of it has moved with the bone
+  // When the block is at rest again, all of it has moved with the bone.
   Vectors u;
   solver_->displacements(u);
   for (std::size_t n = 0; n < u.size(); ++n)
@@ -273,7 +273,7 @@ TEST_P(Motion, SameInputSameBits)
   }
 }
 
-// the upper planes of nodes are rigid, so that the NaN does not spread over the whole block
+// The upper planes of nodes are rigid, so that the NaN does not spread over the whole block.
 TEST_P(Motion, OneNodeWithoutANumberIsFound)
 {
   test::BlockSettings settings;

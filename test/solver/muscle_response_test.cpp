@@ -38,13 +38,13 @@ TEST(MuscleResponse, is_exact_for_activations_that_go_linearly)
     const Model model = model_of_muscle(rises ? 0.01 : 1, rises ? 1 : 0.03);
     const double time = rises ? 0.01 : 0.03, from = rises ? 0.1 : 0.9, to = rises ? 0.9 : 0.1;
     const double begin = rises ? 0.05 : 0.95, seconds = 0.02;
-    // forward differences, whose error is proportional to the step
+    // Forward differences, whose error is proportional to the step.
     constexpr int steps = 100000;
     double a = begin;
     for (int i = 0; i < steps; ++i)
       a += seconds / steps * (from + (i + 0.5) / steps * (to - from) - a) / time;
     EXPECT_NEAR(after(model, from, to, seconds, begin), a, 1e-5);
-    // two half steps give the same result
+    // Two half steps give the same result.
     const double half = after(model, from, 0.5 * (from + to), seconds / 2, begin);
     EXPECT_NEAR(after(model, 0.5 * (from + to), to, seconds / 2, half), a, 1e-5);
   }

@@ -77,14 +77,14 @@ TEST_P(BodiesTouch, momentum_goes_over_to_a_body_that_is_pushed)
 
 TEST_P(BodiesTouch, a_pushed_body_comes_to_rest_where_its_forces_balance)
 {
-  // the finger is pushed by a constant force
+  // The finger is pushed by a constant force.
   Model model = block_and_pushed_finger(2e-3, 0, 0.5);
   model.contacts[0].force = { { 0, 0, -0.02 } };
   auto solver = make(model);
   solver->advance(0.4, solver->controls());
   EXPECT_NEAR(solver->reactions()[0].force[2], 0.02, 0.01 * 0.02);
 
-  // the finger is pulled by a spring to its bone, which moves down; the origin of the bone's motion is elsewhere
+  // A spring pulls the finger to its bone, which moves down. The origin of the bone's motion is elsewhere.
   model = block_and_pushed_finger(2e-3, 40, 0.5);
   solver = make(model);
   Controls controls = solver->controls();
@@ -94,7 +94,6 @@ TEST_P(BodiesTouch, a_pushed_body_comes_to_rest_where_its_forces_balance)
   for (const std::size_t axis : { 0, 2 })
     EXPECT_NEAR(solver->reactions()[0].force[axis], 40 * offset(*solver)[axis], 1e-4) << axis;
   EXPECT_GT(offset(*solver)[2], 0.1e-3);
-  // the finger rotates with its bone
   EXPECT_EQ(solver->bodies()[0].rotation, controls.bone[1].rotation);
 }
 
@@ -118,7 +117,7 @@ TEST_P(BodiesTouch, a_pushed_body_goes_on_with_the_same_bits)
   EXPECT_EQ(solver->bodies()[0].translation, RigidTransform().translation);
 }
 
-// A body that is light for the stiffness of contact shortens the time step instead of making the motion unstable.
+// A body with little mass compared with the stiffness of contact shortens the time step; the motion stays stable.
 TEST_P(BodiesTouch, a_light_body_is_pushed_in_short_steps)
 {
   Model light = block_and_pushed_finger(0.5e-6, 40, 0), heavy = block_and_pushed_finger(2e-3, 40, 0);

@@ -51,7 +51,7 @@ Vectors displacements(const Solver& solver)
   return u;
 }
 
-// velocities that bend, stretch and shear the film
+// Velocities that bend, stretch and shear the film.
 Vectors disturbance(const Model& model, double speed)
 {
   Vectors v(model.nodes.size());
@@ -83,7 +83,7 @@ TEST_P(ShellBackend, energy_and_momentum_are_kept)
 {
   const Model model = film_on_block(true, 10e6);
   const auto solver = make(model);
-  // stretches the film one way and shortens it the other, at constant volume
+  // Stretches the film along one axis and shortens it along the other, at constant volume.
   Vectors v(model.nodes.size());
   for (std::size_t n = 0; n < v.size(); ++n)
     v[n] = { { 30 * rest(model, n)[0] - 0.1, 0.1 - 30 * rest(model, n)[1], 0.01 } };
@@ -109,8 +109,8 @@ TEST_P(ShellBackend, energy_and_momentum_are_kept)
     EXPECT_LT(std::abs(ledger.imbalance()), allowed * ledger.largest);
     largest = std::max(largest, ledger["shell"] / ledger.largest);
   }
-  EXPECT_GT(largest, 10 * allowed);  // the energy is so large that an error would be seen
-  // find the momentum from two positions of the centre of mass
+  EXPECT_GT(largest, 10 * allowed);  // the energy is so large that an error would be noticed
+  // Find the momentum from two positions of the centre of mass.
   const double time = solver->time();
   momentum(displacements(*solver), before);
   solver->advance(1e-3, solver->controls());
@@ -158,7 +158,7 @@ TEST_P(ShellBackend, moves_as_the_reference_does)
   }
 }
 
-// A plate above the block stops the nodes that the film pushes as well.
+// A plate above the block stops nodes that the film pushes too.
 TEST_P(ShellBackend, a_plate_touches_the_block_beside_it)
 {
   Model model = film_on_block(false), film = model;
@@ -222,7 +222,7 @@ TEST_P(ShellBackend, it_is_switched_while_running)
   EXPECT_NE(displacements(*solver), displacements(*other));
 }
 
-// A film that determines the highest frequency gains no energy at the full time step without damping.
+// A film that determines the highest frequency gains no energy with full time steps and without damping.
 TEST_P(ShellBackend, the_bound_of_the_time_step_includes_the_film)
 {
   Model model = film_on_block(true, 300e6);

@@ -26,7 +26,6 @@ Model block_with_skin()
   return model;
 }
 
-// Displacements of a stretch along z.
 std::vector<std::array<double, 3>> stretched(const Model& model, double stretch)
 {
   std::vector<std::array<double, 3>> u;
@@ -59,7 +58,7 @@ TEST_P(SkinFields, are_those_of_a_uniform_stretch)
   for (const float strain : field)
     EXPECT_NEAR(strain, 0.5 * (stretch * stretch - 1), 1e-5);
   solver->skin_field(SkinField::stress, field);
-  // for the neo-Hookean law with isochoric split, s_zz - s_xx = mu J^(-5/3) (stretch^2 - 1)
+  // For the neo-Hookean law with isochoric split, s_zz - s_xx = mu J^(-5/3) (stretch^2 - 1).
   const double expected = test::shear_modulus({}) * std::pow(stretch, -5.0 / 3) * (stretch * stretch - 1);
   for (const float stress : field)
     EXPECT_NEAR(stress, expected, 1e-3 * expected);

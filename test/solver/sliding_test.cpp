@@ -14,7 +14,7 @@ using Vectors = std::vector<std::array<double, 3>>;
 namespace
 {
 
-// position of the ridge of a roof: two planes that meet along y
+// Position of the ridge of a roof, which is two planes that meet along y.
 constexpr std::array<double, 2> ridge{ { 10e-3, -3e-3 } };  // x, z [m]
 
 // Exact distance from p, above the roof, to its surface.
@@ -45,7 +45,7 @@ TEST_P(Sliding, KeepsItsLevelOverARidge)
   s.damping = 50;
   s.young = 3e3;
   Model model = test::block_model(s);
-  // nodes of the underside are 3 mm above the roof
+  // The nodes of the underside are 3 mm above the roof.
   std::vector<std::int32_t> underside;
   for (std::size_t n = 0; n < model.nodes.size(); ++n)
     if (model.nodes[n][2] == 0)
@@ -75,7 +75,7 @@ TEST_P(Sliding, KeepsItsLevelOverARidge)
   EXPECT_LT(off_roof, 0.1e-3);
 }
 
-// A cap slides on a ball. Its rows have every length, so that the kernel processes nodes one by one and in batches.
+// A cap slides on a ball. Its rows have all lengths, so that the kernel processes nodes one by one and in batches.
 TEST(SlidingKernels, AreAlikeOnAnyNumberOfThreadsAndCloseOnEachInstructionSet)
 {
   const double radius = 9.6e-3;
@@ -129,7 +129,7 @@ TEST(SlidingKernels, AreAlikeOnAnyNumberOfThreadsAndCloseOnEachInstructionSet)
         largest = std::max(largest, std::abs(one[n][axis]));
       }
     EXPECT_GT(largest, 1e-3);
-    // each solver may be 5 um off the level, because solvers change planes in different steps
+    // Each solver may be 5 um off the level, because solvers change planes in different steps.
     EXPECT_LT(worst, 10e-6) << instructions;
   }
 }

@@ -34,10 +34,10 @@ struct Variant
   std::string name;
   std::function<void(Model&)> change;
   bool ledger = false;
-  int parts = 1;  // number of parts of a run, of 80 steps each
+  int parts = 1;  // number of parts of a run; each part has 80 steps
 };
 
-// Makes the floor a bone, with friction.
+// Lets the floor move with a bone, and gives it friction.
 void move_floor(Model& m)
 {
   m.bones = { "jaw" };
@@ -53,7 +53,7 @@ void steady(Model& m)
       load.kind = Load::Kind::traction;
 }
 
-// All effects at once; variants with a moving floor and friction, with each precision, with the assembled time step.
+// Models with all effects at once: with a moving floor and friction, with each precision, with the assembled time step.
 std::vector<Variant> variants()
 {
   return { { "plain", [](Model&) {} },
@@ -114,13 +114,13 @@ TEST_P(Snapshots, motion_goes_on_with_the_same_bits)
     solver->restore(*snapshot);
     const Seen second = play(*solver, variant, 0.2f, 3e-4);
     EXPECT_TRUE(first == second) << variant.name;
-    // the restored state must not depend on what happened before
+    // The restored state must not depend on what happened before.
     solver->set_displacements(Vectors(first.u.size(), { { 1e-5, 0, 0 } }));
     play(*solver, variant, 1, 0);
     solver->reset();
     solver->restore(*snapshot);
     EXPECT_TRUE(play(*solver, variant, 0.2f, 3e-4) == first) << variant.name;
-    // taking a snapshot does not change the motion, and reusing its memory does not change the next
+    // Taking a snapshot does not change the motion, and reusing its memory does not change the next snapshot.
     const auto plain = solver_of(variant);
     play(*plain, variant, 0.7f, 1e-4);
     EXPECT_TRUE(play(*plain, variant, 0.2f, 3e-4) == first) << variant.name;
@@ -147,7 +147,7 @@ TEST_P(Snapshots, a_reset_leaves_nothing_behind)
   }
 }
 
-// The assembled estimate lengthens steps during the motions of the variants; otherwise its variant would be useless.
+// The assembled estimate lengthens steps during the motions of the variants. Otherwise its variant would be useless.
 TEST_P(Snapshots, the_assembled_time_step_comes_within_a_play)
 {
   const auto one = solver_of(variants()[0]), other = solver_of(variants()[2]);
@@ -165,7 +165,7 @@ TEST_P(Snapshots, go_on_in_another_solver_as_bytes)
     const auto other = solver_of(variant);
     other->unpack(bytes);
     EXPECT_TRUE(play(*other, variant, 0.2f, 3e-4) == here) << variant.name;
-    // damaged bytes are refused, and nothing changes
+    // Damaged bytes are refused, and nothing changes.
     const Seen before = play(*other, variant, 0.2f, 3e-4);
     other->unpack(bytes);
     play(*other, variant, 0.2f, 3e-4);

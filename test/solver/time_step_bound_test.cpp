@@ -20,8 +20,8 @@ using test::Vectors;
 namespace
 {
 
-// A model of fat with random single voxels of one or two stiffer and heavier materials. It has holes, a muscle in some
-// voxels, unequal edges, a random element, and nodes that are rigid, prescribed, or prescribed along one axis.
+// A model of fat with random single voxels of one or two stiffer and heavier materials. It has holes, unequal edges, a
+// muscle in some voxels, a random kind of element, and nodes that are rigid, prescribed, or prescribed along one axis.
 Model random_mixture(std::mt19937& random)
 {
   std::uniform_real_distribution<double> share(0, 1);
@@ -183,7 +183,7 @@ class Looks : public test::EveryBackend
 {
 };
 
-// Bounds found by the stepping kernels equal that of the monitor.
+// Bounds that the stepping kernels find equal that of the monitor.
 TEST_P(Looks, find_what_the_monitor_finds)
 {
   std::mt19937 random(11);
@@ -202,7 +202,7 @@ TEST_P(Looks, find_what_the_monitor_finds)
       u[node.node] = { 0, 0, 0 };
     solver->set_displacements(u);
     const std::vector<float> activation(model.muscles.size(), 0);
-    // the step grows slowly when the bound falls: make tiny steps, in which nothing moves, until it has grown
+    // The step grows slowly when the bound falls. Tiny steps, in which nothing moves, let it grow completely.
     for (int step = 0; step < 100; ++step)
       solver->advance(1e-13, { activation, {} });
     const double critical = solver->monitor().critical_time_step;

@@ -148,7 +148,7 @@ TEST(TimeStepController, is_cautious_after_signs_of_fast_change)
 TEST(TimeStepController, takes_shorter_steps_while_stiffened_tissue_vibrates)
 {
   TimeStepController controller(rest, 0.9, 0);
-  // a contraction slowly makes the model five times as stiff
+  // A contraction slowly makes the model five times as stiff.
   for (double squared = rest; squared < 5 * rest; squared *= 1.03)
     controller.observe(squared, 32);
   EXPECT_TRUE(is_calm(controller));
@@ -162,7 +162,7 @@ TEST(TimeStepController, takes_shorter_steps_while_stiffened_tissue_vibrates)
   for (int step = 0; step < 256; ++step)
     controller.observe(0.9 * squared, 1);
   EXPECT_TRUE(is_calm(controller));
-  // near the stiffness at rest, changes of the same relative size do not count as a vibration
+  // Near the stiffness at rest, changes of the same relative size do not count as a vibration.
   TimeStepController soft(rest, 0.9, 0);
   for (const double share : { 1.0, 0.9, 1.0, 0.9 })
     soft.observe(share * rest, 32);

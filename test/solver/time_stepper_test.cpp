@@ -12,7 +12,7 @@ using namespace frontalis;
 namespace
 {
 
-/// Requests to a scripted backend, and the answers it gives.
+/// Calls of a scripted backend, and the answers that it gives.
 struct Script
 {
   std::vector<StepPlan> plans;
@@ -29,7 +29,7 @@ struct ScriptState : BackendState
   void archive(ByteArchive& archive) override { archive(plans); }
 };
 
-/// A backend that moves nothing and records its calls.
+/// A backend that does not move anything and records its calls.
 class ScriptedBackend : public StepBackend
 {
 public:
@@ -233,7 +233,7 @@ TEST(TimeStepper, keeps_a_ledger_of_stored_energies_and_of_the_work_that_the_bac
   s.solver.set_velocities(NodalVectors(model_of().nodes.size(), { { 0, 0, 2 } }));
   s.script.work = { 11, 7, 5, 1, 3, 2 };  // work of muscles, loads, constraints; losses to friction, damping, viscosity
   const EnergyLedger now = s.solver.ledger();
-  // velocities are half a step behind displacements, and gravity changes them within the step
+  // Velocities are half a step behind displacements, and gravity changes them within the step.
   const double mass = 1000 * 64e-9;
   EXPECT_NEAR(now["kinetic"], 0.5 * mass * 2 * (2 - 9.81 * s.solver.time_step()), 1e-12);
   EXPECT_NEAR(now.initial, now["kinetic"] + 3 + 2, 1e-12);

@@ -55,7 +55,7 @@ TEST_P(TissuesTouch, a_motion_goes_on_with_the_same_bits)
 {
   const Model model = pressed_fold();
   const auto solver = make(model, 2, true), other = make(model, 2, true);
-  // take the snapshot at several stages of the search for contact
+  // The snapshot is taken at several stages of the search for contact.
   for (const double start : { 0.5e-3, 0.9 * until_touching, until_touching + 3e-3 })
   {
     solver->reset();
@@ -103,7 +103,7 @@ TEST_P(TissuesTouch, self_contact_is_switched_while_running)
   const Model model = pressed_fold();
   Model without = model;
   switch_off(without, EffectSet().with(Effect::self_contact));
-  // the bound of the time step still includes contact
+  // The bound of the time step still includes contact.
   const double dt = 1e-5;
   const auto solver = make(model, 2, true, dt), other = make(without, 2, true, dt);
   solver->switch_effect(Effect::self_contact, false);
@@ -133,7 +133,7 @@ TEST_P(TissuesTouch, the_time_step_is_that_of_a_model_in_contact)
   const double with = make(model)->time_step(), plain = make(without)->time_step();
   EXPECT_LT(with, plain);
   EXPECT_GT(with, 0.96 * plain);
-  // the blocks have no damping, the full time step, and are pressed together by their weight
+  // The blocks have no damping, make full time steps, and are pressed together by their weight.
   model.gravity = { { 0, 0, -200 } };
   model.time_step_share = 1;
   for (std::size_t n = 0; n < model.nodes.size(); ++n)

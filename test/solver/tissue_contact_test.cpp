@@ -49,7 +49,7 @@ TEST_P(TissuesTouch, two_blocks_press_each_other_evenly_and_hardly_overlap)
       const auto solver = make(model);
       solver->advance(0.08, solver->controls());
       const Vectors u = displacements(*solver);
-      // strain of the lower block, and least and largest overlap of the sides [m]
+      // Strain of the lower block, and smallest and largest overlap of the sides [m].
       double least = 1, most = 0, strain = 0;
       const std::size_t side = 6 * 5;
       for (std::size_t n = 0; n < side; ++n)
@@ -65,7 +65,7 @@ TEST_P(TissuesTouch, two_blocks_press_each_other_evenly_and_hardly_overlap)
       EXPECT_LT(most, 0.02e-3);
       EXPECT_GT(least, 0);
       EXPECT_LT(most - least, 0.05 * most) << beyond << ' ' << poisson;
-      // neo-Hookean tissue stiffens under compression: pressure / E = strain (1 + strain), up to the second order
+      // Neo-Hookean tissue stiffens under compression: pressure / E = strain (1 + strain), to second order.
       const double pressure = strain * (1 + strain) * settings.young;
       EXPECT_NEAR(0.5 * (most + least) * 3.5 * settings.young / 1e-3, pressure, 0.03 * pressure);
     }
@@ -134,8 +134,8 @@ TEST_P(TissuesTouch, an_impact_keeps_energy_and_momentum)
   }
 }
 
-// Balls of voxels have smooth surfaces outside the staircases of their voxels. They collide off centre, or glance off
-// each other at 1 m/s, without damping.
+// Balls of voxels have smooth surfaces outside the staircases of their voxels. The balls collide off centre, or glance
+// off each other at 1 m/s, without damping.
 TEST_P(TissuesTouch, balls_of_voxels_collide_as_smooth_ones)
 {
   const double radius = 5.2, middle = 6.5;
@@ -176,8 +176,8 @@ TEST_P(TissuesTouch, balls_of_voxels_collide_as_smooth_ones)
   }
 }
 
-// A small block lies on a long one under oblique gravity, whose pressure is 5 % of Young's modulus. It slides slowly,
-// because friction on vertices that come under the block follows the pressure with a delay of 1 ms.
+// A small block lies on a long one under oblique gravity, whose pressure is 5 % of Young's modulus. The block slides
+// slowly, because friction on vertices that come under the block follows the pressure with a delay of 1 ms.
 TEST_P(TissuesTouch, a_block_sticks_below_the_angle_of_friction_and_slides_above_it)
 {
   const double friction = 0.5, damping = 3000, gravity = 981, settling = 15e-3, time = 5e-3;
@@ -207,7 +207,7 @@ TEST_P(TissuesTouch, a_block_sticks_below_the_angle_of_friction_and_slides_above
   };
   const auto place = [](const std::pair<std::unique_ptr<Solver>, std::size_t>& block)
   {
-    // the nodes of the small block are the last ones
+    // The nodes of the small block are the last ones.
     const Vectors u = displacements(*block.first);
     return mean(Vectors(u.end() - 6 * 5 * 3, u.end()), 0);
   };
@@ -265,7 +265,7 @@ TEST_P(TissuesTouch, a_folded_sheet_touches_itself)
   EXPECT_LT(deepest, 0.02e-3);
 }
 
-// A strip bent into three quarters of a ring: neighbours on one surface do not touch.
+// A strip is bent into three quarters of a ring. Neighbours on one surface do not touch.
 TEST_P(TissuesTouch, bending_alone_is_no_contact)
 {
   BlockSettings settings;

@@ -99,7 +99,8 @@ TEST_P(Viscosity, energy_that_a_swinging_block_loses_is_accounted_for)
   EXPECT_LT(std::abs(ledger.imbalance()), 0.01 * ledger.largest);
 }
 
-// Relaxation must count at the middle of a step; at the end, the error of its work would be dt / (2 * time constant).
+// The work of relaxation must be that at the middle of a step. At the end of the step, its error would be dt / (2 *
+// time constant).
 TEST_P(Viscosity, energy_is_accounted_for_where_stresses_relax_within_some_steps)
 {
   test::BlockSettings settings;

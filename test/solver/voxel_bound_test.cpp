@@ -31,7 +31,6 @@ Matrix product(const Matrix& a, const Matrix& b)
   return c;
 }
 
-// Rotation by a random unit quaternion.
 Matrix random_rotation(std::mt19937& random)
 {
   std::normal_distribution<double> normal;
@@ -49,7 +48,7 @@ Matrix random_rotation(std::mt19937& random)
              { { 2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y) } } } };
 }
 
-// A random deformation with stretches from 1 / `most` to `most`. Three of four keep the volume to within 2 %.
+// A random deformation with stretches from 1 / `most` to `most`. Three out of four keep the volume to within 2 %.
 Matrix random_gradient(std::mt19937& random, double most, int index)
 {
   std::uniform_real_distribution<double> value(-1, 1);
@@ -66,7 +65,7 @@ Matrix random_gradient(std::mt19937& random, double most, int index)
   return product(random_rotation(random), product(diagonal, random_rotation(random)));
 }
 
-// Ratio of the true largest eigenvalue of a single voxel to its bound.
+// The true largest eigenvalue of a single voxel, divided by its bound.
 double true_over_bound(const Model& model, const Matrix& F)
 {
   Vectors u(8);

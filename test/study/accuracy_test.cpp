@@ -20,7 +20,7 @@ namespace
 
 constexpr double length = 8e-3, width = 4e-3;
 
-// A bar of tissue, held at x = 0, with a muscle in its upper half, which shortens the bar and bends it up.
+// A bar of tissue that is held at x = 0. A muscle in its upper half shortens the bar and bends it up.
 Model bar(const AccuracySetting& setting)
 {
   const double edge = setting.profile.voxel[0];
@@ -40,7 +40,7 @@ Model bar(const AccuracySetting& setting)
     model.fibre_weight[e] = m == 1 ? 0.5F : 2 * model.voxels[e][2] >= m ? 1 : 0;
   for (const std::int32_t node : nodes_where(model, [](const auto& p) { return p[0] == 0; }))
     model.rigid.push_back({ node, -1 });
-  // the skin is the upper face; its points are corners of voxels of every size
+  // The skin is the upper face. Its points are corners of voxels of every size.
   for (int i = 0; i <= 2; ++i)
     for (int j = 0; j <= 1; ++j)
     {
@@ -57,7 +57,7 @@ Model bar(const AccuracySetting& setting)
   model.hourglass = setting.profile.assumed_strain ? HourglassControl::assumed_strain : HourglassControl::scalar;
   if (setting.profile.precision == "double")
     model.precision = Precision::double_precision;
-  // any other number of samples makes the bake fail
+  // Any other number of samples makes the bake fail.
   if (setting.profile.samples != 4)
     throw Error("no such bar");
   return model;
@@ -124,7 +124,7 @@ const AccuracyRow& row_named(const AccuracyFindings& findings, const std::string
   throw Error("no row is called " + name);
 }
 
-// Error of the settled skin, compared with a bar whose voxel edge is half that of the reference.
+// Error of the settled skin, by comparison with a bar whose voxel edge is half that of the reference.
 double true_error(const AccuracySetting& setting)
 {
   AccuracySetting finer = setting;
@@ -137,7 +137,7 @@ double true_error(const AccuracySetting& setting)
     solver->settle({ { 0.5F }, {} }, 1e-3, 0.4);
     solver->skin(skins[which]);
   }
-  // area of each vertex in units of a third of a triangle, which is the number of triangles at the vertex
+  // Area of each vertex in units of a third of a triangle, which is the number of triangles at the vertex.
   const double area[] = { 1, 2, 3, 3, 2, 1 };
   double sum = 0;
   for (std::size_t v = 0; v < 6; ++v)
@@ -175,12 +175,12 @@ TEST_F(Accuracy, what_is_chosen_keeps_its_promise)
   EXPECT_LT(true_error(chosen.setting), 1.2 * tolerance);
   EXPECT_NEAR(true_error(chosen.setting) / chosen.settled.rms, 1, 0.2);
   const AccuracyRow& best = most_accurate_within(findings, 1e9);
-  // a costlier setting is in the front if its error is 5 % smaller; errors below that of the reference count as equal
+  // A costlier setting is in the front if its error is 5 % smaller. Errors below that of the reference count as equal.
   EXPECT_LE(0.95 * best.error.rms, std::max(fine, findings.reference_error));
   EXPECT_TRUE(best.error.rms <= fine || best.cost <= row_named(findings, "1 mm").cost)
       << "a setting with a larger error must be cheaper";
   EXPECT_NEAR(true_error(best.setting) / best.settled.rms, 1, 0.2 + findings.reference_error / best.settled.rms);
-  // costs in seconds depend on the machine, but the number of steps does not
+  // Costs in seconds depend on the machine, but the number of steps does not.
   const AccuracyRow& quick = most_accurate_within(findings, findings.rows[findings.front.front()].cost);
   EXPECT_EQ(quick.name, findings.rows[findings.front.front()].name);
   for (const AccuracyRow* row : { &chosen, &best, &quick })
@@ -228,7 +228,7 @@ TEST_F(Accuracy, motions_of_another_backend_serve_and_are_told)
   EXPECT_TRUE(std::any_of(there.notes.begin(), there.notes.end(), told));
 }
 
-// Contents of files by name, for motions only, because costs differ between runs.
+// Contents of files by name. Files of costs are left out, because costs differ between runs.
 std::map<std::string, std::string> files_in(const std::string& folder, const std::string& extension)
 {
   std::map<std::string, std::string> files;
@@ -251,7 +251,7 @@ TEST_F(Accuracy, variants_go_on_from_checkpoints_with_the_same_bits)
   const auto whole = files_in(plan.folder + "/variants", ".motion");
   plan.folder = folder + "/parts";
   int checkpoints = 0, calls = 0;
-  // each round is interrupted after about 17 calls, within the 30 slices of a variant or while it settles
+  // Each round is interrupted after about 17 calls, within the 30 slices of a variant or while the variant settles.
   for (bool complete = false; !complete; ++calls)
   {
     ASSERT_LT(calls, 1000);
@@ -298,7 +298,7 @@ TEST_F(Accuracy, bad_plans_are_told)
   EXPECT_NE(fault().find("each smaller than the one before"), std::string::npos) << fault();
 }
 
-// Prescribed costs and errors instead of measured ones.
+// Findings with given costs and errors instead of measured ones.
 AccuracyFindings four_settings()
 {
   AccuracyFindings findings;

@@ -1,4 +1,4 @@
-// The active-set method finds the minimum that a search over all sets of active limits finds.
+// Checks that the active-set method finds the same minimum as a search over all sets of active limits.
 
 #include "study/fit/bounded_minimum.hpp"
 
@@ -18,8 +18,8 @@ using Eigen::VectorXd;
 
 double value_of(const MatrixXd& h, const VectorXd& g, const VectorXd& x) { return x.dot(h * x) / 2 - g.dot(x); }
 
-// tries all cases in which each variable is at its lower limit, at its upper limit or free, and returns the least of
-// the minima that are within the limits
+// Tries all cases in which each variable is at its lower limit, at its upper limit or free. Returns the smallest of the
+// minima that are within the limits.
 double least_value(const MatrixXd& h, const VectorXd& g, const VectorXd& lower, const VectorXd& upper)
 {
   const auto count = static_cast<int>(g.size());

@@ -13,7 +13,7 @@ using namespace frontalis;
 namespace
 {
 
-// Prescribed time per step of an effect [s]. A step takes the sum over the running effects.
+// Given time per step of an effect [s]. A step takes the sum over the running effects.
 double price_of(Effect effect) { return 1e-6 * std::pow(2, static_cast<int>(effect)); }
 
 double price_of(EffectSet effects)
@@ -30,7 +30,7 @@ bool is_active(const TimedSolver& timed)
   return !activation.empty() && std::all_of(activation.begin(), activation.end(), [](float a) { return a == 0.75f; });
 }
 
-// Returns prescribed costs as times, with a disturbance common to all solvers of a round, and records the comparisons.
+// Returns given costs as times, with a disturbance that all solvers of a round share, and records the comparisons.
 struct SetTimes
 {
   struct Comparison
@@ -85,7 +85,7 @@ TEST(EffectCosts, AreTheDifferenceToTheModelWithoutTheEffect)
   EXPECT_DOUBLE_EQ(all.costs.plain_step, price_of(Effect::elasticity));
   for (const EffectCost& cost : all.costs.effects)
   {
-    // friction requires sliding
+    // A model without sliding has no friction either, so that the cost of sliding includes that of friction.
     const double price = !cost.presence.present || cost.effect == Effect::output_fields ? 0
                          : cost.effect == Effect::sliding ? price_of(Effect::sliding) + price_of(Effect::friction)
                                                           : price_of(cost.effect);

@@ -49,7 +49,6 @@ TEST(LinearStatics, FindsWhatIsUnstable)
 {
   const Model model = bar(1e5, 0.3);
   EXPECT_TRUE(LinearStatics(model).positive_definite());
-  // an inverted voxel
   const LinearStatics crushed(model, { { -0.2, 0, 0, 0, 1, 0, 0, 0, 1 } });
   EXPECT_FALSE(crushed.positive_definite());
   EXPECT_THROW(crushed.solve(Vectors(model.nodes.size())), Error);

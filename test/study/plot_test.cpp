@@ -33,7 +33,7 @@ TEST(Plot, WritesAPictureInBothFormatsAndLeavesNothingElse)
   if (std::system("command -v gnuplot >/dev/null 2>&1") != 0)
     GTEST_SKIP() << "gnuplot is not installed";
   const TemporaryFolder folder;
-  // a path may contain special characters of the shell
+  // A path may contain special characters of the shell.
   write_plot(parabola(), folder / "it's; a $parabola");
   const std::string text = text_of(folder / "it's; a $parabola.svg");
   EXPECT_NE(text.find("x [m]"), std::string::npos);

@@ -1,5 +1,5 @@
-// Small scenes, some random and some former failures. The motion must stay finite, and must either balance its energy
-// or be stopped with a report. Repeated motions must have the same bits.
+// Small scenes, some random, some that failed once. The motion must stay finite, and must either balance its energy or
+// be stopped with a report. Repeated motions must have the same bits.
 
 #include "frontalis/error.hpp"
 #include "frontalis/model/sample_field.hpp"
@@ -168,7 +168,7 @@ void expect_sound(const SmallScene& scene)
 }  // namespace
 
 // The bone's jerks excite vibrations near the critical time step. If the time step followed every swing of the bound,
-// 13 % of the energy would be unexplained.
+// the ledger would not explain 13 % of the energy.
 TEST(Property, SheetBetweenAJerkingBoneAndAFloorExplainsItsEnergy)
 {
   SmallScene scene{};
@@ -192,7 +192,7 @@ TEST(Property, SheetBetweenAJerkingBoneAndAFloorExplainsItsEnergy)
   expect_sound(scene);
 }
 
-// The same sheet without damping, with an assembled time step. Here 16 % of the energy would be unexplained.
+// The same sheet without damping and with an assembled time step. Here the ledger would not explain 16 % of the energy.
 TEST(Property, UndampedSheetWithAnAssembledTimeStepExplainsItsEnergy)
 {
   SmallScene scene{};
@@ -223,7 +223,7 @@ TEST(Property, UndampedSheetWithAnAssembledTimeStepExplainsItsEnergy)
 namespace
 {
 
-// A random number made of an integer, because RapidCheck shrinks integers well: x / scale, x from low to high.
+// A random number x / scale with an integer x from low to high, because RapidCheck shrinks integers well.
 double real(int low, int high, double scale) { return *rc::gen::inRange(low, high + 1) / scale; }
 
 Material material()
@@ -233,7 +233,7 @@ Material material()
   auto& p = result.parameters;
   const double mu = p[0];
   result.law = static_cast<Law>(*rc::gen::inRange(0, static_cast<int>(physics::material_table.size())));
-  // a law other than neo-Hookean has the parameters of its example, scaled to this shear modulus
+  // A law other than neo-Hookean has the parameters of its example, scaled to this shear modulus.
   if (result.law != Law::neo_hookean)
   {
     const auto& description = physics::description_of(result.law);
@@ -298,7 +298,7 @@ SmallScene draw()
 
 TEST(Property, RandomScenesStayFiniteExplainTheirEnergyAndRepeat)
 {
-  // seed and number of scenes are fixed unless the environment sets them (RC_PARAMS="max_success=10000")
+  // Seed and number of scenes are fixed unless the environment sets them (RC_PARAMS="max_success=10000").
   ::setenv("RC_PARAMS", "seed=20261121 max_success=200", 0);
   int scenes = 0, stopped = 0;
   const bool held = rc::check(
@@ -314,7 +314,7 @@ TEST(Property, RandomScenesStayFiniteExplainTheirEnergyAndRepeat)
         RC_ASSERT(fault.empty());
       });
   EXPECT_TRUE(held);
-  // a guard that stops every scene would hide other faults
+  // A guard that stops every scene would hide other faults.
   EXPECT_LT(stopped, 0.2 * scenes);
   EXPECT_GT(scenes, 0);
 }

@@ -1,4 +1,4 @@
-// The files of hard cases: the bounds of a case come from its file, and faults of files are reported.
+// The files of hard cases. The bounds of a case come from its file, and faults of files are reported.
 
 #include "frontalis/study/stability.hpp"
 

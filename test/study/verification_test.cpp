@@ -40,7 +40,7 @@ TEST(Cases, HaveNamesOfTheirOwnAndATextInTheManual)
   }
 }
 
-// runs a case on every backend of this machine
+// Runs a case on every backend of this machine.
 class ContactCase : public testing::TestWithParam<const char*>
 {
 };

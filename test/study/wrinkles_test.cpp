@@ -1,4 +1,4 @@
-// furrows of skins whose depth and spacing are known
+// Measures furrows of skins whose depth and spacing are known.
 
 #include "frontalis/study/wrinkles.hpp"
 
@@ -20,7 +20,7 @@ struct Sheet
   SkinTriangles triangles;
 };
 
-// a cylinder of radius 75 mm about z, 80 mm wide and high, raised by `height` [m] of the arc length and z [m]
+// A cylinder of radius 75 mm about z, 80 mm wide and high, raised by `height` [m] of the arc length and z [m].
 Sheet sheet(double edge, const std::function<double(double, double)>& height)
 {
   constexpr double radius = 75e-3;
@@ -34,7 +34,7 @@ Sheet sheet(double edge, const std::function<double(double, double)>& height)
   for (int j = 0; j <= n; ++j)
     for (int i = 0; i <= n; ++i)
     {
-      // rows are moved by half an edge, so that no line of vertices follows a furrow
+      // Every other row is shifted by half an edge, so that no line of vertices follows a furrow.
       const double arc = (i + 0.5 * (j % 2)) * edge - 40e-3, z = j * edge, step = 1e-5;
       const auto p = at(arc, z), a = at(arc + step, z), b = at(arc, z + step);
       std::array<double, 3> normal{};
@@ -83,7 +83,7 @@ TEST_P(Waves, have_their_depth_spacing_and_direction)
   EXPECT_NEAR(std::abs(found.direction[1] * c + found.direction[2] * s), 1, 1e-3);
   if (angle == 0)
   {
-    // the middle of the box is on a ridge
+    // The middle of the box is on a ridge.
     EXPECT_EQ(found.furrows.size(), 2 * static_cast<std::size_t>(std::lround(22e-3 / spacing)));
   }
 }
@@ -94,7 +94,7 @@ INSTANTIATE_TEST_SUITE_P(Skins, Waves,
 
 TEST(Wrinkles, count_one_furrow_and_its_length)
 {
-  // a furrow of 2 mm, 40 mm long
+  // A furrow of 2 mm, 40 mm long.
   const auto furrow = [](double arc, double z)
   {
     const double along = 1 / (1 + std::exp((std::abs(arc) - 20e-3) / 1e-3));

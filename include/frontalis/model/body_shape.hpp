@@ -5,10 +5,10 @@
 namespace frontalis
 {
 
-/// A body that tissue touches, or a bone, with what a viewer needs to show it.
+/// A bone, or a body that tissue touches, with what a viewer needs to show it.
 struct BodyShape
 {
-  std::string name;                       ///< name of its constraint, or of the bone
+  std::string name;                       ///< of its constraint, or of the bone
   std::string frame;                      ///< name of its frame, below the face frame: body/NAME or bone/NAME
   std::array<double, 3> centre;           ///< origin of that frame at rest, local [m]
   const TriangleMesh* surface = nullptr;  ///< surface at rest, local [m], owned by the model; may be null or empty

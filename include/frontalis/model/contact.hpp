@@ -21,13 +21,13 @@ struct Contact
   std::array<double, 3> centre{};  ///< origin of the body's published frame at rest, local [m]
   TriangleMesh shape{};            ///< the body's surface at rest, local, to be shown [m]; may be empty
 
-  // a body that is pushed: it may shift relative to its bone, but turns with it
+  // A body that is pushed may shift relative to its bone, but turns with it.
   double mass = 0;                ///< [kg]; 0: the body is not pushed, but moves with its bone
-  std::array<double, 3> force{};  ///< constant, local axes [N]
+  std::array<double, 3> force{};  ///< constant force on the body, local axes [N]
   double spring = 0;              ///< stiffness of the spring to the body's place on its bone [N/m]
   double damping = 0;             ///< damping force over the body's velocity relative to that place [N s/m]
 
-  // points of the tissue: vertices of its surface
+  // The points of the tissue are the vertices of its surface.
   std::vector<std::array<double, 3>> points;  ///< at rest, local [m]
   std::vector<double> area;                   ///< area of each point [m2]: vertex_areas()
   Binding binding;                            ///< one entry per point

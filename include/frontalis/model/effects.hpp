@@ -16,8 +16,8 @@ struct EffectPresence
 {
   bool present = false;
   std::string why;         ///< why it is present or not, in a few words
-  std::size_t voxels = 0;  ///< voxels that it acts on; 0 if it acts on nodes
-  std::size_t nodes = 0;   ///< nodes that it acts on; 0 if it acts on voxels
+  std::size_t voxels = 0;  ///< number of voxels that the effect acts on; 0 if it acts on nodes
+  std::size_t nodes = 0;   ///< number of nodes that the effect acts on; 0 if it acts on voxels
 };
 
 /// Tells whether a model has an effect; no other function decides this.
@@ -40,7 +40,7 @@ std::vector<TouchedBody> touched_bodies(const Model& model);
 std::vector<std::int32_t> moving_bones(const Model& model);
 
 /// Removes effects from a model, so that nothing is stored for them, and adds their names to Model::switched_off.
-/// Throws Error if check_switched_off() does.
+/// Throws Error if the effects cannot be removed (check_switched_off()).
 void switch_off(Model& model, EffectSet off);
 
 }  // namespace frontalis

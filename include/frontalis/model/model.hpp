@@ -18,58 +18,59 @@ namespace frontalis
 {
 
 /// Everything that the solver needs, constant while it runs: plain arrays in SI units, in a local frame. The origin
-/// lies within the model, so that float is precise. The x axis is the one with the longest rows of voxels, by an even
-/// permutation of the scene's axes, which keeps the handedness.
+/// lies within the model, so that single precision suffices for positions. The local axes are an even permutation of
+/// the scene's axes, which keeps the handedness; local x is the axis with the longest rows of voxels.
 struct Model : ModelPresets
 {
-  // grid: node (i,j,k) rests at rest_place() * spacing from the local origin, which is (i,j,k) * spacing but for flaps
+  // Grid: outside of flaps, node (i,j,k) rests at (i,j,k) * spacing from the local origin; rest_place() gives the place
+  // in flaps.
   std::array<double, 3> spacing{ { 1e-3, 1e-3, 1e-3 } };  ///< voxel edges [m]
   std::array<std::int32_t, 3> size{ { 0, 0, 0 } };        ///< voxels of the bounding grid along x, y, z
 
-  // voxels, ordered by k, then j, then i; lower corner at node (i,j,k)
+  // Voxels are ordered by k, then j, then i; the lower corner of voxel (i,j,k) is node (i,j,k).
   std::vector<std::array<std::int32_t, 3>> voxels;
   std::vector<float> fill;  ///< proportion of the voxel that is tissue, 0..1: scales stiffness and mass
-  /// Empty, or per voxel the centroid of its tissue, from -1 to 1 along each axis: the point where its stress is
-  /// computed.
+  /// Centroid of the tissue in each voxel, from -1 to 1 along each axis: the point where the voxel's stress is
+  /// computed. Empty if all voxels are whole.
   std::vector<std::array<float, 3>> tissue_centre;
 
-  // mixture of voxel e: entries mixture_begin[e] .. mixture_begin[e + 1]; proportions add up to 1
+  // The mixture of voxel e is entries mixture_begin[e] .. mixture_begin[e + 1]; proportions add up to 1.
   std::vector<Material> materials;
   std::vector<std::int32_t> mixture_begin;
   std::vector<std::int16_t> mixture_material;
   std::vector<float> mixture_proportion;
-  /// Empty, or two directions per voxel (local axes, length 1) that replace those of its materials with fibres; a
-  /// material with one direction uses the first. If a direction is zero, the material's own direction applies.
+  /// Two directions per voxel (local axes, length 1) that replace the fibre directions of its materials; a material
+  /// with one direction uses the first. A direction of zero means that the material's own direction applies. May be
+  /// empty.
   std::vector<std::array<float, 6>> material_directions;
 
-  // muscles of voxel e: entries fibre_begin[e] .. fibre_begin[e + 1]; directions have length 1
+  // The muscles of voxel e are entries fibre_begin[e] .. fibre_begin[e + 1]; directions have length 1.
   std::vector<Muscle> muscles;
   std::vector<std::int32_t> fibre_begin;
   std::vector<std::int16_t> fibre_muscle;
   std::vector<float> fibre_weight;  ///< proportion of the tissue in the voxel that is this muscle, 0..1
   std::vector<std::array<float, 3>> fibre_direction;
 
-  // nodes, ordered by k, then j, then i: the corners of the voxels (derived: see build_nodes)
+  // Nodes are the corners of the voxels, ordered by k, then j, then i; build_nodes() derives them.
   std::vector<std::array<std::int32_t, 3>> nodes;
   std::vector<std::array<std::int32_t, 8>> voxel_nodes;  ///< corner b = i + 2j + 4k
 
-  /// Planes of the grid with tissue from the second side of a gap, so that this tissue shares no node with the first
-  /// side: voxels and nodes with k >= first rest `shift` planes lower.
+  /// Tissue on the second side of a gap has planes of the grid of its own, so that it shares no node with the first
+  /// side: voxels and nodes with k >= first rest `shift` planes lower than their index says.
   struct Flap
   {
     std::int32_t first = 0;
     std::int32_t shift = 0;
   };
   std::vector<Flap> flaps;  ///< ascending; empty without gaps
-  /// Two nodes that move as one, where a flap continues in other tissue. Both rest at one place.
+  /// Two nodes that move as one, where a flap continues in other tissue. Both have the same rest position.
   struct Joint
   {
     std::int32_t node = 0;
-    std::int32_t master = 0;  ///< not the node of another joint; several joints may have the same master
+    std::int32_t master = 0;  ///< not the `node` of another joint; several joints may have the same master
   };
   std::vector<Joint> joints;
 
-  // constraints
   std::vector<std::string> bones;
   std::vector<std::string> constraints;  ///< names, in the scene's order
   std::vector<ConstraintSurface> constraint_surfaces;
@@ -80,26 +81,22 @@ struct Model : ModelPresets
   std::vector<SelfContact> self_contacts;
   std::vector<Shell> shells;
 
-  // loads
   std::array<double, 3> gravity{ { 0, 0, 0 } };  ///< local axes [m/s2]
   std::vector<Load> loads;
   std::vector<PrescribedNode> prescribed;
 
-  // published skin and landmarks
   TriangleMesh skin;
   Binding skin_binding;
   std::vector<std::string> landmarks;
   std::vector<std::array<double, 3>> landmark_positions;  ///< at rest, local [m]
   Binding landmark_binding;
 
-  // frames
   RigidTransform to_scene;
   RigidTransform to_face;
   std::string face_frame = "face";
 
-  // time
   double damping = 0;       ///< mass-proportional damping coefficient [1/s]
-  double time_scaling = 1;  ///< seconds of activations and frames per second of the solver's time
+  double time_scaling = 1;  ///< how many seconds of activations and frames pass per second of the solver's time
   double frame_rate = 30;   ///< [1/s] of wall time
   /// Fastest change of a muscle's activation [1/s of simulated time]; 0: no limit.
   double activation_slew = 0;
@@ -115,11 +112,11 @@ struct Model : ModelPresets
 
   std::string scene_hash;  ///< of the scene's content; empty for models made by programs
 
-  SkinFilm film;  ///< of the skin, for its fine lines
+  SkinFilm film;  ///< film on the skin, for its fine lines
 };
 
-/// Rest position of the voxel or node at `place` in the grid, in voxel edges from the origin: `place`, unless it is in
-/// a flap.
+/// Rest position of the voxel or node with the index `place`, in voxel edges from the origin. It equals `place` outside
+/// of flaps.
 inline std::array<std::int32_t, 3> rest_place(const Model& model, std::array<std::int32_t, 3> place)
 {
   for (auto flap = model.flaps.rbegin(); flap != model.flaps.rend(); ++flap)

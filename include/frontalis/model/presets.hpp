@@ -16,11 +16,11 @@ struct ModelPresets
   struct BonePose
   {
     std::int32_t bone = -1;          ///< index into bones
-    std::array<double, 3> shift{};   ///< [m], after the turn
-    std::array<double, 3> turn{};    ///< rotation vector about the centre [rad]
+    std::array<double, 3> shift{};   ///< translation, applied after the rotation [m]
+    std::array<double, 3> turn{};    ///< rotation vector about `centre` [rad]
     std::array<double, 3> centre{};  ///< [m]
   };
-  /// Pose of the face by name. Activations by muscle index, -1..1, are added to the muscle's tone.
+  /// A named pose of the face. `activation`, by muscle index, -1..1, is added to the muscle's tone.
   struct Expression
   {
     std::string name;
@@ -30,19 +30,19 @@ struct ModelPresets
   std::vector<Expression> expressions, action_units;
   struct DemoPhase
   {
-    std::int32_t expression = -1;   ///< index into expressions; -1: relax; -2: that of the phase before
+    std::int32_t expression = -1;   ///< index into expressions; -1: relax; -2: the expression of the phase before
     double ramp = 0.3;              ///< [s] simulated
     double seconds = 1;             ///< [s] simulated
     std::vector<BonePose> bones{};  ///< other bones stay where they are
   };
   std::vector<DemoPhase> demo;
 
-  // accuracy profiles of the scene, as they were measured (doc/accuracy.md)
+  // An accuracy profile of the scene, as it was measured (doc/accuracy.md).
   struct AccuracyProfile
   {
     std::string name;
     double error = 0;     ///< RMS error of the skin [m]; 0: not measured
-    double cost = 0;      ///< wall seconds per simulated second; 0: not measured
+    double cost = 0;      ///< wall seconds per second of simulated time; 0: not measured
     std::string machine;  ///< on which it was measured
   };
   std::vector<AccuracyProfile> profiles;

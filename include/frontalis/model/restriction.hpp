@@ -26,7 +26,7 @@ struct SampledField
 struct ConstraintSurface
 {
   std::string name;
-  std::int32_t bone = -1;  ///< index into Model::bones of the bone that it moves with; -1: it stands still
+  std::int32_t bone = -1;  ///< index into Model::bones of the bone that moves the surface; -1: it stands still
   double friction = 0;     ///< Coulomb's coefficient
   SampledField field;
 };
@@ -34,28 +34,29 @@ struct ConstraintSurface
 struct RigidNode
 {
   std::int32_t node = 0;
-  std::int32_t bone = -1;        ///< index into Model::bones; -1: it stands still
-  std::int32_t constraint = -1;  ///< constraint that restricts it, in Model::constraints; -1: unknown
+  std::int32_t bone = -1;        ///< index into Model::bones of the bone that holds the node; -1: it stands still
+  std::int32_t constraint = -1;  ///< constraint that restricts the node, in Model::constraints; -1: unknown
 };
 
 struct SlidingNode
 {
   std::int32_t node = 0;
   std::int32_t surface = 0;      ///< index into Model::constraint_surfaces
-  double distance = 0;           ///< value of the surface's field at rest, kept while the node slides [m]
-  std::int32_t constraint = -1;  ///< constraint that restricts it, in Model::constraints; -1: unknown
+  double distance = 0;           ///< value of the surface's field at the node at rest, kept while the node slides [m]
+  std::int32_t constraint = -1;  ///< constraint that restricts the node, in Model::constraints; -1: unknown
 };
 
-/// Node near the surface of a bone or beyond it, whose motion is extrapolated from that of a free node, its master, so
-/// that tissue is attached at the surface itself and not where the node happens to be. A held node's displacement
-/// relative to the bone is `ratio` times its master's. A sliding node's distance from the surface is `ratio` times its
-/// master's; along the surface it is free.
+/// A node near the surface of a bone or beyond it. Its motion is extrapolated from that of a free node, its master, so
+/// that the tissue is attached at the surface itself rather than at the position of the node. The displacement of a
+/// held node relative to the bone is `ratio` times its master's displacement. The distance of a sliding node from the
+/// surface is `ratio` times its master's distance; along the surface the node is free.
 struct AttachedNode
 {
   std::int32_t node = 0;
-  std::int32_t master = 0;       ///< a node that is not restricted; it may have several such nodes
-  double ratio = 0;              ///< node's over master's distance from the surface at rest, -1..1; negative beyond it
-  std::int32_t bone = -1;        ///< of a held node: index into Model::bones; -1: it stands still
+  std::int32_t master = 0;  ///< a free node; several attached nodes may have the same master
+  /// distance from the surface at rest, the node's over its master's, -1..1; negative beyond the surface
+  double ratio = 0;
+  std::int32_t bone = -1;        ///< of a held node: index into Model::bones; -1: the node stands still
   std::int32_t surface = -1;     ///< of a sliding node: index into Model::constraint_surfaces; -1: the node is held
   std::int32_t constraint = -1;  ///< constraint that attaches it, in Model::constraints; -1: unknown
 };
@@ -81,7 +82,7 @@ struct Load
   std::array<bool, 3> fixed{ { true, true, true } };  ///< displacement: which components are prescribed, local axes
   double ramp = 0;                                    ///< [s]
   TriangleMesh mesh;                                  ///< traction and pressure: the surface, at rest
-  Binding binding;                                    ///< of the mesh's vertices
+  Binding binding;                                    ///< binding of the mesh's vertices
 };
 
 }  // namespace frontalis

@@ -11,7 +11,8 @@ namespace frontalis
 struct SurfaceDistance
 {
   SurfaceDistance(double signed_distance, double past = 0) : value(signed_distance), past_rim(past) {}
-  double value;     ///< signed distance; past the rim of an open surface it is that from the tangent plane at the rim
+  /// signed distance; past the rim of an open surface, signed distance from the tangent plane at the rim
+  double value;
   double past_rim;  ///< how far the point is past the rim of an open surface; 0 beside or above the surface
 };
 /// The distance of a point in local coordinates.
@@ -21,18 +22,19 @@ using Distance = std::function<SurfaceDistance(const std::array<double, 3>&)>;
 using Loop = std::function<void(std::size_t count, const std::function<void(std::size_t)>& body)>;
 void one_by_one(std::size_t count, const std::function<void(std::size_t)>& body);
 
-/// Distances are asked for in clusters of points, the middle one first. This is the largest distance between two points
-/// of a cluster, in spacings.
+/// Distances are requested for clusters of points, beginning with the middle point of a cluster. This is the largest
+/// distance between two points of a cluster, in spacings.
 constexpr double cluster_extent = 7;
 
-/// Samples a distance every `spacing` [m], in all bricks (physics/distance_field.hpp) that sliding nodes can reach:
-/// those within `travel` [m] of a node's rest position where the distance is between the smallest and the largest
-/// distance of such nodes, with a margin of one spacing. Bricks past the rim are left out.
+/// Samples a distance every `spacing` [m] in all bricks (physics/distance_field.hpp) that sliding nodes can reach. A
+/// brick is reached if it is within `travel` [m] of the rest position of a node and if its distance from the surface is
+/// between the smallest and the largest one of these nodes, with a margin of one spacing. Bricks past the rim are left
+/// out.
 SampledField sample_field(const std::vector<std::array<double, 3>>& rest, const Distance& distance, double spacing,
                           double travel, const Loop& loop = one_by_one);
 
-/// Samples a distance in all bricks within `reach` [m] of a surface; on its inner side within `inside` [m] if that is
-/// more. `lower`, `upper`: corners of a box around the surface.
+/// Samples a distance in all bricks within `reach` [m] of a surface, or within `inside` [m] on its inner side if that
+/// is more. `lower`, `upper`: corners of a box around the surface.
 SampledField sample_band(const std::array<double, 3>& lower, const std::array<double, 3>& upper,
                          const Distance& distance, double spacing, double reach, const Loop& loop = one_by_one,
                          double inside = 0);
@@ -51,7 +53,7 @@ bool has_samples_near(const SampledField& field, const std::array<double, 3>& p,
 /// along it, each at its distance at rest. Returns the index of the surface.
 std::int32_t slide_on(Model& model, const std::string& name, SampledField field,
                       const std::vector<std::int32_t>& nodes);
-/// The same for a surface that is given by its distance function, which is sampled here.
+/// Like the function above, for a surface that is given by its distance function, which is sampled here.
 std::int32_t slide_on(Model& model, const std::string& name, const Distance& distance,
                       const std::vector<std::int32_t>& nodes, double spacing = 0.5e-3, double travel = 20e-3);
 

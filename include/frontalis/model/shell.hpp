@@ -8,14 +8,15 @@ namespace frontalis
 {
 
 /// A layer of the tissue that is a shell: thinner than the voxels that carry it, with membrane and bending stiffness of
-/// its own. It has no mass; that of the voxels includes it.
+/// its own. The shell has no mass, because the mass of the voxels includes the layer.
 struct Shell
 {
   std::string name;           ///< of the layer in the scene
   double thickness = 0;       ///< [m]
   std::int32_t material = 0;  ///< index into Model::materials, of which only the stiffness at rest counts
-  TriangleMesh surface;       ///< middle of the layer free of moments, local: at rest, or creased (rest_shape.hpp)
-  Binding binding;            ///< of its vertices
+  /// middle of the layer free of moments, local, at rest or creased (rest_shape.hpp); edges as long as a voxel's
+  TriangleMesh surface;
+  Binding binding;  ///< binding of the surface's vertices
 };
 
 }  // namespace frontalis

@@ -9,20 +9,22 @@
 namespace frontalis
 {
 
-/// A thin stiff film on the skin, such as horny layer and epidermis on dermis, whose lines no voxel resolves. Vertices
-/// of Model::skin that have no triangle in `carried` follow from the others: they halve edges of a smooth surface.
+/// A thin stiff film on the skin, such as epidermis on dermis. Its lines are finer than a voxel. The first vertices of
+/// Model::skin, those of the triangles `carried`, follow the voxels; each later vertex halves an edge between two
+/// earlier ones on a smooth surface.
 struct SkinFilm
 {
   double thickness = 0;     ///< [m]; 0: the skin has no film
   double modulus = 0;       ///< of the film, E / (1 - nu^2) [Pa]
   double poisson = 0;       ///< of the film
   double base_modulus = 0;  ///< of the tissue below it, E / (1 - nu^2) [Pa]
-  double stretch = 0;       ///< strain of the film in the skin at rest, equal in all directions: it delays lines
-  std::vector<std::array<std::int32_t, 3>> carried;  ///< triangles of the first vertices, which voxels carry
-  std::vector<std::array<std::int32_t, 2>> parents;  ///< of each later vertex: the two between which it lies
+  /// strain of the film in the skin at rest, equal in all directions; it delays the onset of lines
+  double stretch = 0;
+  std::vector<std::array<std::int32_t, 3>> carried;  ///< triangles of the vertices that follow the voxels
+  std::vector<std::array<std::int32_t, 2>> parents;  ///< of each later vertex: the two vertices between which it lies
 };
 
-/// Wavelength [m] and compressive strain at which a film on a half-space folds: 2 pi t (Ef / 3 Es)^(1/3) and
+/// Wavelength [m] and compressive strain at which a film on a half-space buckles: 2 pi t (Ef / 3 Es)^(1/3) and
 /// (3 Es / Ef)^(2/3) / 4, with Ef and Es the moduli of plane strain (Cao & Hutchinson 2012).
 double film_wavelength(const SkinFilm& film);
 double film_critical_strain(const SkinFilm& film);

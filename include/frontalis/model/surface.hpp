@@ -27,7 +27,7 @@ struct RigidTransform
   std::array<double, 9> rotation{ { 1, 0, 0, 0, 1, 0, 0, 0, 1 } };  ///< row by row
   std::array<double, 3> translation{ { 0, 0, 0 } };                 ///< [m]
 
-  /// The rotation applied to a vector.
+  /// Applies the rotation to a vector.
   template <class Number>
   std::array<double, 3> turned(const std::array<Number, 3>& v) const
   {
@@ -35,7 +35,7 @@ struct RigidTransform
     { return rotation[i] * v[0] + rotation[i + 1] * v[1] + rotation[i + 2] * v[2]; };
     return { { row(0), row(3), row(6) } };
   }
-  /// The map applied to a point [m].
+  /// Applies the map to a point [m].
   template <class Number>
   std::array<double, 3> operator()(const std::array<Number, 3>& p) const
   {

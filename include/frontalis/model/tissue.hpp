@@ -30,8 +30,8 @@ struct Muscle
   double stress_reference = 0.3e6;  ///< active stress at full activation and optimal length [Pa]
   bool passive = false;
   bool tension_length = true;
-  double rise_time = 0;  ///< time constant with which activation rises to the commanded one [s]; 0: at once
-  double fall_time = 0;  ///< the same for falling activation [s]
+  double rise_time = 0;  ///< time constant with which activation rises to the commanded value [s]; 0: at once
+  double fall_time = 0;  ///< time constant with which activation falls to the commanded value [s]; 0: at once
   double tone = 0;       ///< activation at rest, 0..1
 };
 

@@ -7,12 +7,14 @@ namespace frontalis
 namespace physics
 {
 
-/// Assumed-strain hourglass control of a box voxel (Belytschko & Bindeman 1993, Comput. Methods Appl. Mech. Eng.
-/// 105:225, ASQBI field): one stiffness per axis, Poisson coupling between the two bendings of a plate, torsion by the
-/// shear modulus. The modes are pulled back by the deformation gradient as in a total Lagrangian strain, so that the
-/// stiffness rotates with the element. The energy 1/2 r K r, r = F^T q, is frame-indifferent and forces are its full
-/// gradient, so that energy and angular momentum are conserved. A small part of the scalar stiffness is added to
-/// control crushed elements.
+/// Assumed-strain hourglass control of a box voxel: the ASQBI field of Belytschko & Bindeman (1993, Comput. Methods
+/// Appl. Mech. Eng. 105:225). Each axis has its own bending stiffness, Poisson's ratio couples the two bendings of a
+/// plate, and the shear modulus resists torsion.
+///
+/// The hourglass modes q are pulled back by the deformation gradient, r = F^T q, so that the stiffness rotates with the
+/// element. The energy 1/2 r K r does not change in a rotation, and the forces are its complete gradient, so that
+/// energy and angular momentum are conserved. A small part of the scalar hourglass stiffness is added, which also
+/// controls crushed elements, whose F^T q is small.
 template <class T>
 struct AssumedStrain
 {
@@ -22,7 +24,7 @@ struct AssumedStrain
   T warping;   ///< 2 mu (1 + nu) / 3 times tissue volume [N m]
 };
 
-/// Fraction of the scalar hourglass stiffness that is added.
+/// Fraction of the scalar hourglass stiffness that is added to assumed-strain control.
 constexpr double assumed_strain_floor = 0.02;
 
 template <class T>
@@ -35,12 +37,12 @@ FRONTALIS_LAW AssumedStrain<T> assumed_strain(T mu, T kappa, T tissue_volume)
   return { bending, nu * bending, mu * tissue_volume, twice * (N::of(1) + nu) * N::of(1.0 / 3) };
 }
 
-/// Index of the hourglass mode yz, xz, xy or xyz (pair 0 to 3) among the transformed displacements.
+/// Index, among the transformed displacements, of the hourglass mode yz, xz, xy or xyz (pair 0, 1, 2 or 3).
 FRONTALIS_LAW constexpr int paired_mode(int pair) { return pair == 0 ? 6 : pair == 1 ? 5 : pair == 2 ? 3 : 7; }
 
-/// Bending stiffness of two strains that vary along the same axis, and the stiffness that couples them: E / (1 - n^2)
-/// and n times that, with n = nu times the squared ratio of the shortest edge to the edge along that axis. If that axis
-/// has the shortest edge, both are those of a plate.
+/// Two normal strains vary along the same axis. `own` is the bending stiffness of each, E / (1 - n^2), and `coupled`
+/// the stiffness between the two, n E / (1 - n^2). Here n is Poisson's ratio times the squared ratio of the shortest
+/// edge to the edge along that axis; for an axis with the shortest edge, these are the values of a plate.
 template <class T>
 struct AxisBending
 {
@@ -56,15 +58,16 @@ FRONTALIS_LAW AxisBending<T> axis_bending(const AssumedStrain<T>& k, const S* we
   if (!(weight[axis] < other))
     return { k.bending, k.coupling };
   const S ratio = weight[axis] / other;
-  // the bound avoids 0 / 0 in a SIMD lane without a voxel
+  // The lower limit avoids 0 / 0 in a SIMD lane that has no voxel.
   const T n = T(ratio * ratio) * k.coupling / N::max(k.bending, N::of(1e-30));
-  // E times tissue volume is three times the warping stiffness
+  // E times tissue volume is three times the warping stiffness.
   const T own = N::of(3) * k.warping / (N::of(1) - n * n);
   return { own, n * own };
 }
 
-/// Forces conjugate to the pulled-back modes r[pair][axis], indexed alike. weight[i] = 1 / (4 sqrt(3) h_i): products of
-/// two weights are the volume integrals of mode derivatives, for modes of amplitude 8.
+/// Forces conjugate to the pulled-back modes r[pair][axis]; force[pair][axis] has the same order. With weight[i] = 1 /
+/// (4 sqrt(3) h_i), the volume integrals of products of mode derivatives are products of two weights, for modes of
+/// amplitude 8.
 template <class T, class S>
 FRONTALIS_LAW void hourglass_forces(const AssumedStrain<T>& k, const S* weight, const T (&r)[4][3], T (&force)[4][3])
 {
@@ -74,9 +77,9 @@ FRONTALIS_LAW void hourglass_forces(const AssumedStrain<T>& k, const S* weight, 
   {
     const int j = (i + 1) % 3, l = (i + 2) % 3;
     const T wi(weight[i]), wj(weight[j]), wl(weight[l]);
-    // u_i in the mode that does not vary along i: torsion, and its coupling to the other two
+    // Displacement u_i in the mode that does not vary along i: torsion, and its coupling to the other two modes.
     force[i][i] = k.torsion * (((wj * wj) + (wl * wl)) * r[i][i] + wi * (wj * r[j][j] + wl * r[l][l]));
-    // u_i in the modes paired with j and l: bending along i, coupled to bending along j and l
+    // Displacement u_i in the modes paired with j and l: bending along i, coupled to bending along j and l.
     force[j][i] = wi * (along[l].own * wi * r[j][i] + along[l].coupled * wj * r[i][j]);
     force[l][i] = wi * (along[j].own * wi * r[l][i] + along[j].coupled * wl * r[i][l]);
     force[3][i] = k.warping * wi * wi * r[3][i];

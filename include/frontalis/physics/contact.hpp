@@ -10,23 +10,24 @@ namespace frontalis
 namespace physics
 {
 
-/// Contact acts as a stiffness: a point that is g deep in a body is pushed out by the pressure
+/// Contact acts as a stiffness: a point at depth g inside a body is pushed out by the pressure
 ///   p = contact_stiffness E g / h,
-/// with E Young's modulus of the mixture in its voxel and h the shortest voxel edge. A pressure of 5 % of E thus
-/// presses it 1.4 % of a voxel deep, whatever Poisson's ratio is. (With a multiple of the longitudinal modulus instead,
-/// it would be 13 times as deep at a ratio of 0.3 as at 0.49.) Where nodes of nearly incompressible tissue touch, the
-/// highest squared frequency of the model grows by 3.5 %, and steps are 1.7 % shorter.
+/// where E is Young's modulus of the mixture in the point's voxel and h the shortest voxel edge. A pressure of 5 % of E
+/// thus pushes the point in by 1.4 % of a voxel, for every Poisson's ratio. (With a multiple of the longitudinal
+/// modulus in place of E, the depth would be 13 times as large at a ratio of 0.3 as at 0.49.) Where nodes of nearly
+/// incompressible tissue touch a body, the highest squared frequency of the model grows by 3.5 %, so that steps are
+/// 1.7 % shorter.
 constexpr double contact_stiffness = 3.5;
 
-/// Stiffness along the surface at a point that sticks, over the stiffness along the normal.
+/// Stiffness along the surface of a point that sticks, divided by the stiffness along the normal.
 constexpr double sticking_stiffness = 0.5;
 
-/// Largest norm of a field's gradient; that of an exact distance is 1. Each component of a spline's gradient is a mean
-/// of slopes of at most 1, so that its norm is at most sqrt(3).
+/// Largest norm of the gradient of a sampled distance field. The gradient of an exact distance has length 1; each
+/// component of a spline's gradient is a mean of slopes of at most 1, so that its norm is at most sqrt(3).
 constexpr double steepest_field = 1.7320508;
 
-/// Friction drops the delayed normal force on a point that has left its body once it is less than that at this depth
-/// [m].
+/// Friction follows the normal force with a delay. After a point has left its body, the delayed force is set to zero
+/// once it is less than the contact force at this depth [m].
 constexpr double forgotten_depth = 1e-9;
 
 /// Whether a point touches a body.
@@ -58,9 +59,9 @@ struct Touch
 };
 
 /// Contact and Coulomb friction of a point inside a body (field.value < 0). `x`: position in the body's frame [m];
-/// `grip`: the one returned in the previous step, or, when contact begins, an anchor at x with the forces that let_go()
-/// left; `stiffness`: of the point [N/m]; `friction`: Coulomb's coefficient; `response`: friction_response(), because
-/// friction that follows the normal force at once makes elastic bodies flutter where they slide.
+/// `grip`: the one returned in the previous step or, when contact begins, an anchor at x with the forces that let_go()
+/// left; `stiffness`: of the point [N/m]; `friction`: Coulomb's coefficient; `response`: friction_response(). Friction
+/// needs this delay, because elastic bodies flutter where they slide if friction follows the normal force at once.
 ///
 /// The normal force is the gradient of 1/2 stiffness value^2, so that a frictionless body adds no energy. Friction is
 /// the tangential stiffness times the displacement from the anchor, returned to Coulomb's cone (Simo & Laursen, An

@@ -13,9 +13,10 @@ namespace physics
 {
 
 // A cut voxel is only partly filled with tissue. Its stress is computed at the centroid of the tissue, where the
-// gradient of trilinear displacements depends on the hourglass modes too. If q are the transformed displacements, and T
-// q replaces the mean gradient in them by that at the centroid, the energy of a cut voxel is that of a whole voxel at T
-// q. So its forces are T^T times those at T q for every law, and energy and momentum are conserved.
+// gradient of trilinear displacements also depends on the hourglass modes. Let q be the transformed displacements, and
+// T the linear map that replaces their mean gradient by the gradient at the centroid. The energy of a cut voxel is that
+// of a whole voxel at T q, so that its forces are T^T times the forces at T q. This holds for every material law, and
+// energy and momentum are conserved.
 
 /// The centroid of the tissue in a voxel, from -1 to 1 along each axis; 0 in a whole voxel.
 template <class T>
@@ -24,7 +25,7 @@ struct TissueCentre
   T x, y, z;
 };
 
-/// Replaces the mean gradient in transformed displacements of one component by that at the centroid: T.
+/// Applies T to the transformed displacements of one component: replaces the mean gradient by that at the centroid.
 template <class T>
 FRONTALIS_LAW void to_tissue_centre(const TissueCentre<T>& c, T (&mode)[8])
 {
@@ -33,7 +34,7 @@ FRONTALIS_LAW void to_tissue_centre(const TissueCentre<T>& c, T (&mode)[8])
   mode[4] = mode[4] + c.x * mode[5] + c.y * mode[6] + (c.x * c.y) * mode[7];
 }
 
-/// T^T: forces on the gradient at the centroid act on the hourglass modes too.
+/// Applies T^T to the forces of one component: forces on the gradient at the centroid act on the hourglass modes too.
 template <class T>
 FRONTALIS_LAW void from_tissue_centre(const TissueCentre<T>& c, T (&force)[8])
 {
@@ -43,9 +44,9 @@ FRONTALIS_LAW void from_tissue_centre(const TissueCentre<T>& c, T (&force)[8])
   force[7] = force[7] + (c.y * c.z) * force[1] + (c.x * c.z) * force[2] + (c.x * c.y) * force[4];
 }
 
-/// Factors r_b of the bound of the time step at the corners of a cut voxel: r_b k takes the place of the stiffness
-/// bound k of a whole voxel with the same tissue (physics/time_step.hpp). `hourglass`: largest eigenvalue of hourglass
-/// control over that of the stress, both at rest.
+/// Factors r_b of the bound of the time step at the corners b of a cut voxel. Where a whole voxel with the same tissue
+/// contributes its stiffness bound k to each corner (physics/time_step.hpp), a cut voxel contributes r_b k.
+/// `hourglass`: largest eigenvalue of hourglass control divided by that of the stress, both at rest.
 ///
 /// With G the 8 x 3 matrix of shape function gradients in units of 1/h, a whole voxel has G^T G = 1/2, so that k bounds
 /// the quadratic form Q of its stress by Q(Z) <= 2 k |Z|^2 for every gradient Z, deformed or not. For diagonal weights

@@ -23,12 +23,13 @@ struct DistanceField
   static constexpr std::int32_t brick_row = brick_edge + 2;  ///< [samples]
   static constexpr std::int32_t brick_size = brick_row * brick_row * brick_row;
 
-  double origin[3] = { 0, 0, 0 };        ///< of sample (0,0,0), or centre of the sphere [m]
-  double spacing = 1;                    ///< of samples [m]
-  double radius = 0;                     ///< of the sphere [m]; 0: sampled
+  double origin[3] = { 0, 0, 0 };        ///< position of sample (0,0,0), or centre of the sphere [m]
+  double spacing = 1;                    ///< distance between neighbouring samples [m]
+  double radius = 0;                     ///< radius of the sphere [m]; 0: the field is sampled
   std::int32_t bricks[3] = { 0, 0, 0 };  ///< number of bricks in the table along x, y, z
-  const std::int32_t* table = nullptr;   ///< index of each brick's samples, x fastest; negative: there are none
-  const float* samples = nullptr;        ///< brick_size per brick, x fastest; the first belongs to cell (-1,-1,-1) [m]
+  /// index of each brick's samples, x fastest; negative: the brick has no samples
+  const std::int32_t* table = nullptr;
+  const float* samples = nullptr;  ///< brick_size per brick, x fastest; the first belongs to cell (-1,-1,-1) [m]
 
   /// The first of the 3 x 3 x 3 samples around a cell; null if none are stored.
   FRONTALIS_LAW const float* around(const std::int32_t (&cell)[3]) const
@@ -47,8 +48,9 @@ struct DistanceField
   }
 };
 
-/// A point as a cell of a field and the offset from the sample in the cell's centre [m], which may be longer than a
-/// cell. While a node moves, the cell of its rest position stays and the offset grows: float resolves it to nanometres.
+/// A point, stored as a cell of a field and the offset from the sample at the cell's centre [m]. While a node moves, it
+/// keeps the cell of its rest position, so that the offset may become longer than a cell. A float resolves the offset
+/// to nanometres.
 template <class T>
 struct FieldPoint
 {
@@ -66,7 +68,7 @@ FRONTALIS_LAW FieldPoint<double> field_point(const DistanceField& field, const V
   for (int axis = 0; axis < 3; ++axis)
   {
     const double whole = std::floor(*offset[axis] / field.spacing + 0.5);
-    // false if the motion has diverged, or on NaN
+    // `sound` is false if the coordinate is NaN or the motion has diverged.
     const bool sound = whole > -1e9 && whole < 1e9;
     point.cell[axis] = sound ? static_cast<std::int32_t>(whole) : -1000000000;
     *offset[axis] = sound ? *offset[axis] - whole * field.spacing : 0;

@@ -5,10 +5,11 @@
 namespace frontalis::physics
 {
 
-/// Above this argument exponentials of laws continue along their tangent: stiff, but finite in single precision.
+/// Above this argument, exponentials in material laws continue along their tangent, so that they stay stiff but finite
+/// in single precision.
 constexpr double exponent_limit = 20;
 
-/// e^x up to the limit, and its tangent beyond: finite, with continuous slope.
+/// e^x up to exponent_limit and its tangent beyond: a finite function with a continuous slope.
 template <class T>
 FRONTALIS_LAW T bounded_exponential(T x)
 {

@@ -12,12 +12,13 @@ template <class T>
 struct FieldValue
 {
   T value;           ///< [m]
-  Vec3<T> gradient;  ///< about a unit vector, shorter on ridges and in furrows
+  Vec3<T> gradient;  ///< close to a unit vector, shorter on ridges and in furrows
   T curvature;       ///< Frobenius norm of the Hessian [1/m]
   T reach;           ///< distance over which `curvature` describes the field well enough for a tangent plane [m]
 };
 
-/// Largest error [m] of a tangent plane that replaces a level set: small, because changes of plane excite vibrations.
+/// Largest error [m] of a tangent plane that replaces a level set. It is small, because changes of plane excite
+/// vibrations.
 constexpr double plane_error = 0.5e-6;
 
 /// The samples of a cell, x fastest [m].
@@ -33,7 +34,7 @@ FRONTALIS_LAW FieldValue<T> spline(const FieldSamples& samples, const T& inverse
 {
   using N = Number<T>;
   const T x[3] = { place.x, place.y, place.z };
-  // weights of value and first derivative; those of the second derivative are 1, -2, 1
+  // Weights of the value and of the first derivative. Those of the second derivative are 1, -2, 1.
   T w[3][3], d[3][3];
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -48,11 +49,11 @@ FRONTALIS_LAW FieldValue<T> spline(const FieldSamples& samples, const T& inverse
   const auto sum = [](const T(&weight)[3], const T(&of)[3])
   { return weight[0] * of[0] + weight[1] * of[1] + weight[2] * of[2]; };
   const auto bend = [](const T(&of)[3]) { return of[0] - T(2) * of[1] + of[2]; };
-  T f[3], fx[3], fy[3], fxx[3], fxy[3], fyy[3];  // in each plane of samples
+  T f[3], fx[3], fy[3], fxx[3], fxy[3], fyy[3];  // sums in each plane of samples
   FRONTALIS_UNROLL
   for (int k = 0; k < 3; ++k)
   {
-    T g[3], gx[3], gxx[3];  // in each row of the plane
+    T g[3], gx[3], gxx[3];  // sums in each row of the plane
     FRONTALIS_UNROLL
     for (int j = 0; j < 3; ++j)
     {
@@ -82,14 +83,15 @@ FRONTALIS_LAW FieldValue<T> spline(const FieldSamples& samples, const T& inverse
 }
 
 /// Distance of a point from a sphere as a FieldValue. The point has moved by `way` [m] from a place that is `offset`
-/// [m] from the sphere's centre and `distance` [m] from its surface. The caller finds these two in double precision:
-/// then single precision resolves the result as finely as the way, however large the sphere is.
+/// [m] from the sphere's centre and `distance` [m] from its surface. If the caller finds `offset` and `distance` in
+/// double precision, single precision suffices here: rounding errors are then in proportion to the way, not to the size
+/// of the sphere.
 template <class T>
 FRONTALIS_LAW FieldValue<T> sphere_value(const T& distance, const Vec3<T>& offset, const Vec3<T>& way)
 {
   const Vec3<T> now = offset + way;
   const T from_centre = Number<T>::max(norm(now), T(1e-9));
-  // the difference of two lengths is that of their squares over their sum
+  // A difference of two lengths is the difference of their squares divided by their sum; this form avoids cancellation.
   return { distance + dot(T(2) * offset + way, way) / (from_centre + norm(offset)), (T(1) / from_centre) * now,
            T(1.4142136) / from_centre, from_centre };
 }

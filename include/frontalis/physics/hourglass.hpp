@@ -7,9 +7,11 @@ namespace frontalis
 namespace physics
 {
 
-/// Scalar hourglass stiffness [N/m] on the transformed displacements (force = stiffness * mode). It gives the mode u_x
-/// ~ x y, of amplitude c at the corners, the energy of pure bending: 1/2 k (8c)^2 = 2/3 E V c^2 / h^2, hence k = E V /
-/// (48 h^2). A scalar is objective. h is the longest edge, so that no direction is too stiff in bending.
+/// Scalar hourglass stiffness k [N/m] on the transformed displacements (force = k * mode). A mode u_x ~ x y with the
+/// amplitude c at the corners gets the energy of pure bending, 1/2 k (8c)^2 = 2/3 E V c^2 / h^2, hence
+///   k = E V / (48 h^2).
+/// A scalar stiffness is objective: it does not depend on the element's rotation. h is the longest edge, so that no
+/// direction is too stiff in bending.
 template <class T>
 FRONTALIS_LAW T hourglass_stiffness(T young, T volume, T longest_edge)
 {

@@ -51,7 +51,8 @@ FRONTALIS_LAW InvariantDerivatives<T> invariant_derivatives(const Kinematics<T>&
   return { N::max(first, N::of(0)), second };
 }
 
-/// The same for g I1. The second derivative is its exact value at rest, 4, plus the growth of its bound since.
+/// Derivatives of g I1. The bound of the second derivative is its exact value at rest, 4, plus the growth of the
+/// term-by-term bound since rest.
 template <class T>
 FRONTALIS_LAW InvariantDerivatives<T> first_invariant_derivatives(const Kinematics<T>& k)
 {

@@ -9,9 +9,10 @@ namespace frontalis::physics
 /// Below this J the isochoric laws are replaced by a smooth continuation; above it they hold exactly.
 constexpr double continuation_jacobian = 0.2;
 
-/// g(J) = J^(-2/3) and its derivative for J >= J0. Below J0 it continues along its tangent, so that it is finite at J
-/// <= 0, still grows, and opens a crushed or inverted element (C1 in F; Smith, de Goes & Kim 2018 achieve the same with
-/// a regularised energy).
+/// g(J) = J^(-2/3) and its derivative. Below J0 = continuation_jacobian, g continues along its tangent, so that the
+/// energy has a continuous derivative with respect to F. The continuation is finite at J <= 0 and still grows as J
+/// falls, so that it opens a crushed or inverted element. (Smith, de Goes & Kim 2018 achieve the same with a
+/// regularised energy.)
 template <class T>
 struct IsochoricScale
 {

@@ -9,7 +9,7 @@ namespace physics
 
 /// Constants of the tension-length relation (Blemker, Pinsky & Delp 2005, J. Biomech. 38:657), optimal fibre stretch 1.
 constexpr double fibre_optimal_stretch = 1.0;
-constexpr double fibre_linear_stretch = 1.4;  ///< passive fibre stress is linear above it
+constexpr double fibre_linear_stretch = 1.4;  ///< passive fibre stress is linear above this stretch
 constexpr double fibre_p1 = 0.05;
 constexpr double fibre_p2 = 6.6;
 
@@ -38,11 +38,11 @@ FRONTALIS_LAW T passive_tension(T l)
   return curve + N::of(fibre_p1 * fibre_p2) * e * N::max(l - N::of(end), N::of(0));
 }
 
-/// Second Piola-Kirchhoff stress along the fibre [Pa], S = result a0 (x) a0, of a fibre with Cauchy stress
-/// stress_reference (passive + activation active) l, that is S = J sigma / stretch^2. It fades out below a small J, so
-/// that fibres do not keep a crushed element crushed. with_length: 1 applies the tension-length relation, 0 gives the
-/// constant S = activation stress_reference. with_passive: 1 adds the passive part. Passive = false omits it at compile
-/// time.
+/// Second Piola-Kirchhoff stress S along a fibre [Pa]; its tensor is S a0 (x) a0. The Cauchy stress along the fibre is
+/// sigma = stress_reference (passive + activation active) l, with the passive and active tension at the normalised
+/// length l, and S = J sigma / stretch^2. The stress fades out below a small J, so that fibres do not keep a crushed
+/// element crushed. with_length: 1 applies the tension-length relation, 0 gives the constant S = activation
+/// stress_reference. with_passive: 1 adds the passive part. Passive = false omits that part at compile time.
 template <class T, bool Passive = true>
 FRONTALIS_LAW T fibre_stress(T stretch_squared, T J, T stress_reference, T activation, T with_length, T with_passive)
 {
@@ -57,11 +57,12 @@ FRONTALIS_LAW T fibre_stress(T stretch_squared, T J, T stress_reference, T activ
   return stress_reference * fade * (active + passive);
 }
 
-/// Largest slopes of the nominal fibre stress over the stress reference with respect to stretch, at full activation and
-/// constant volume. With these constants the nominal stress, S times the stretch l, is J f(l), f the tension: the
-/// active curve is steepest at l = 0.6 (18 * 0.2), the passive one above l = 1.4 (p1 p2 e^(0.4 p2)). The time step must
-/// allow for the active slope, or for the sum if there is a passive part. Multiplied by the deformation of the element
-/// (physics/time_step.hpp), these bounds include the contribution of f |cof F| up to stretches of 2.5.
+/// Largest slopes of the nominal fibre stress with respect to stretch, divided by the stress reference, at full
+/// activation. The nominal stress, S times the stretch l, is J f(l) with the tension f. At constant volume the active
+/// part is steepest at l = 0.6 (slope 18 * 0.2) and the passive part above l = 1.4 (slope p1 p2 e^(0.4 p2)). The time
+/// step must allow for the active slope, or for the sum of both if the fibres have a passive part. Multiplied by a
+/// factor that grows with the element's deformation (physics/time_step.hpp), these bounds include the contribution of f
+/// |cof F| up to stretches of 2.5.
 constexpr double active_slope_bound = 3.6;
 constexpr double passive_slope_bound = 4.63;
 

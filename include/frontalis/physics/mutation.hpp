@@ -3,9 +3,9 @@
 namespace frontalis
 {
 
-/// Parts of the solver that are removed on purpose, to check that tests notice. They are variables only in the test
-/// library frontalis_mutated_solver, set by FRONTALIS_MUTATION in the environment. Elsewhere they are constants, and
-/// code that depends on them is not compiled.
+/// Parts of the solver that are removed on purpose, to check that tests notice. In the test library
+/// frontalis_mutated_solver they are variables, which the environment variable FRONTALIS_MUTATION sets. Elsewhere they
+/// are constants, and code that depends on them is not compiled.
 namespace mutation
 {
 

@@ -11,7 +11,7 @@
 #define FRONTALIS_LAW inline
 #endif
 
-// Unrolls the next loop, so that arrays indexed by it stay in registers, if the compiler does not do so by itself.
+// Unrolls the loop that follows, so that arrays indexed by it stay in registers.
 #if defined(__CUDACC__)
 #define FRONTALIS_UNROLL _Pragma("unroll")
 #else
@@ -71,7 +71,6 @@ struct Matrix3
   T a[3][3];
 };
 
-/// 3-vector.
 template <class T>
 struct Vec3
 {

@@ -7,13 +7,14 @@ namespace frontalis
 namespace physics
 {
 
-/// Selective reduced integration of a box voxel: the isochoric stress at the eight Gauss points, the volumetric stress
-/// at the centre (Hughes 1980, Int. J. Numer. Meth. Eng. 15:1413). Here the energy is split into these two parts, so
-/// that the forces are its gradient. In the transformed displacements q the derivative along x at the Gauss point (s_x,
-/// s_y, s_z), s = +-1 / sqrt(3), is (q1 + s_y q3 + s_z q5 + s_y s_z q7) / (4 h_x): the hourglass modes get stiffness.
+/// Selective reduced integration of a box voxel: the isochoric stress is taken at the eight Gauss points, the
+/// volumetric stress at the centre (Hughes 1980, Int. J. Numer. Meth. Eng. 15:1413). Here the energy is split into
+/// these two parts, so that the forces are its gradient. The derivative of the transformed displacements q along x at
+/// the Gauss point (s_x, s_y, s_z), s = +-1 / sqrt(3), is (q1 + s_y q3 + s_z q5 + s_y s_z q7) / (4 h_x), so that the
+/// hourglass modes q3, q5 and q7 have stiffness.
 constexpr double gauss_coordinate = 0.57735026918962576;  // 1 / sqrt(3)
 
-/// +-1/sqrt(3) along an axis at one of the eight points.
+/// Coordinate of one of the eight Gauss points along an axis.
 FRONTALIS_LAW constexpr double gauss_point(int point, int axis)
 {
   return point & (1 << axis) ? gauss_coordinate : -gauss_coordinate;

@@ -12,12 +12,12 @@ namespace physics
 template <class T>
 struct ShellTriangle
 {
-  Vec3<T> from_corner[5];  ///< vertices 1..5 less corner 0 [m]
-  T metric[3];             ///< inverse of the matrix of scalar products of the first two: 11, 12, 22 [1/m2]
-  T inverse_area;          ///< of the doubled area [1/m2]
-  T shear, dilatation;     ///< Lame's constants in plane stress times thickness and area [J]
-  T height[3];             ///< of vertices 3..5 above the triangle's plane [m]
-  T bending[6];            ///< symmetric matrix of the bending energy over heights: 11, 12, 13, 22, 23, 33 [J/m2]
+  Vec3<T> from_corner[5];  ///< vertices 1 to 5 relative to corner 0 [m]
+  T metric[3];          ///< inverse of the matrix of scalar products of the two edges from corner 0: 11, 12, 22 [1/m2]
+  T inverse_area;       ///< 1 over twice the area [1/m2]
+  T shear, dilatation;  ///< Lame's constants in plane stress, times thickness and area [J]
+  T height[3];          ///< of vertices 3..5 above the triangle's plane [m]
+  T bending[6];         ///< symmetric matrix of the bending energy over heights: 11, 12, 13, 22, 23, 33 [J/m2]
 };
 
 template <class T>
@@ -31,14 +31,15 @@ struct ShellReaction
 ///
 /// Membrane: with the singular values s1, s2 of the triangle's deformation gradient,
 ///   E = t A (mu ((s1 - 1)^2 + (s2 - 1)^2) + lambda/2 (s1 + s2 - 2)^2),
-/// lambda of plane stress. It is the energy of linear elasticity in Biot's strain: exact for small strains, any
-/// rotation, and no state is stiffer than rest, so that the bound of the time step at rest holds. Only the trace of
-/// C = F^T F and the ratio J of areas are needed, because (s1 + s2)^2 = tr C + 2 J.
+/// where lambda is that of plane stress. This is the energy of linear elasticity in Biot's strain, which is exact for
+/// small strains and any rotation. No deformed state is stiffer than the state at rest, so that the bound of the time
+/// step at rest holds. Only the trace of C = F^T F and the ratio J of areas are needed, because (s1 + s2)^2 = tr C +
+/// 2 J.
 ///
 /// Bending: the heights of the three outer vertices above the triangle's plane determine the quadratic surface through
-/// all six, and so the triangle's curvature (ShellMesh has the matrix). Heights rather than angles between
-/// triangles: the forces are along the triangle's normal, need no normals of neighbours, and give the energy of a
-/// constant curvature exactly on any mesh. A fold by the angle a counts as one of sin a.
+/// all six vertices, and so the triangle's curvature (ShellMesh has the matrix). Heights are used rather than angles
+/// between triangles, because their forces are along the triangle's normal, need no normals of neighbours, and give the
+/// energy of a constant curvature exactly on any mesh. In a fold by the angle a, sin a takes the place of a.
 template <class T>
 FRONTALIS_LAW ShellReaction<T> shell_forces(const ShellTriangle<T>& rest, const Vec3<T>* u)
 {
@@ -80,7 +81,7 @@ FRONTALIS_LAW ShellReaction<T> shell_forces(const ShellTriangle<T>& rest, const 
   FRONTALIS_UNROLL
   for (int i = 0; i < 3; ++i)
   {
-    // an outer vertex pulls at the corners in proportion to its barycentric coordinates
+    // An outer vertex pulls at the corners in proportion to its barycentric coordinates.
     on_a = on_a + (inverse * dot(at[i + 2], across_a)) * moment[i];
     on_b = on_b + (inverse * dot(at[i + 2], across_b)) * moment[i];
     on_all = on_all + moment[i];

@@ -8,9 +8,9 @@ namespace frontalis
 namespace physics
 {
 
-/// A sliding node cannot follow a gradient shorter than this, which occurs on ridges and in furrows that are narrow
-/// compared with the node's distance from the surface. It keeps its latest tangent plane, as where no samples are
-/// stored.
+/// Shortest gradient of a distance field that a sliding node follows. Gradients are shorter on ridges and in furrows
+/// that are narrow compared with the node's distance from the surface. There the node keeps its latest tangent plane,
+/// as it does where no samples are stored.
 constexpr double least_gradient = 0.05;
 
 /// Tangent plane of a level set near a point: a node moves by -distance * normal to be on it.
@@ -38,11 +38,11 @@ FRONTALIS_LAW bool level_plane(const FieldValue<T>& field, const T& level, Level
   return true;
 }
 
-/// A sliding node off its plane moves back by half of the error per step; an error above twice this value is reduced to
-/// this value at once [m]. Such errors arise when the tangent plane of a node is replaced. Removing one within one step
-/// would add half the stiffness of the tissue times its square to the energy and excite vibrations. The value is 5 um
-/// less the error of a plane that is kept for some steps: plane_error and, where the curvature grows along the way,
-/// about as much again.
+/// Largest distance [m] of a sliding node from its tangent plane that a step leaves. A smaller error is halved in each
+/// step. Errors arise when the tangent plane of a node is replaced; removing one within a single step would add half
+/// the tissue's stiffness times the squared error to the energy and excite vibrations. The value is 5 um less the error
+/// of a plane that is kept for some steps: plane_error and, where the curvature grows along the way, about as much
+/// again.
 constexpr double error_left = 3.5e-6;
 
 /// Slides a node on the plane normal . u = offset (unit normal): removes the velocity along the normal (Lapeer et al.
@@ -85,9 +85,9 @@ FRONTALIS_LAW T friction_loss(const T& coefficient, const T& normal_speed, const
   return N::select(tangential_speed > allowed, allowed / N::max(tangential_speed, allowed), N::of(1));
 }
 
-/// Fraction of a change of the surface's reaction that friction adopts in a step dt [s]: friction follows the reaction
-/// with a delay of 1 ms. Without a delay, sliding of an elastic body is ill-posed, and friction would feed its
-/// vibrations. This is the law of Prakash & Clifton in its simplest form (Cochard & Rice 2000).
+/// Fraction of a change of the surface's reaction that friction adopts in a step of dt [s]: friction follows the
+/// reaction with a delay of 1 ms. Without a delay, the sliding of an elastic body is ill-posed, and friction would feed
+/// its vibrations. The delay is the law of Prakash & Clifton in its simplest form (Cochard & Rice 2000).
 template <class T>
 FRONTALIS_LAW T friction_response(const T& dt)
 {

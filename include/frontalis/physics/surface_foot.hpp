@@ -23,26 +23,26 @@ struct SurfaceFoot
   T gap;             ///< distance of the point from the surface, negative behind it [m]
   Vec3<T> gradient;  ///< derivative of the gap with respect to the point: nearly the normal
   Vec3<T> normal;    ///< unit normal of the surface: the point is x = foot + (gap + bulge) * normal
-  T weight[3];       ///< barycentric coordinates of the foot; negative: it is beyond the edge opposite to that corner
+  T weight[3];       ///< barycentric coordinates of the foot; negative beyond the edge opposite to the corner
   T inside[3];       ///< barycentric coordinates of the nearest point in the triangle
   T spread[3];  ///< factors of (normal - gradient) in the gap's derivatives with respect to the corners' normals [m]
-  Vec3<T> mean_normal;  ///< interpolated at the nearest point, not of length 1
-  Vec3<T> mean_place;   ///< the nearest point in the triangle
-  // the triangle's plane
-  Vec3<T> facet_normal;  ///< unit vector
+  Vec3<T> mean_normal;   ///< corner normals interpolated at the nearest point in the triangle; not of length 1
+  Vec3<T> mean_place;    ///< the nearest point in the triangle
+  Vec3<T> facet_normal;  ///< unit normal of the triangle's plane
   T height;              ///< height of the point above the plane [m]
-  T below[3];            ///< barycentric coordinates of the point's orthogonal projection
+  T below[3];            ///< barycentric coordinates of the point's projection onto the plane
   Vec3<T> slope[3];      ///< gradients of these coordinates [1/m]
 };
 
-/// The point's foot on a triangle, along the normal that is interpolated between those of the corners (Phong). Across
-/// the edge to a neighbour the normal and the gap are continuous: the force does not jump where a point slides on. The
-/// gap is measured from the quadratic surface that belongs to these normals, which is above the triangle by
+/// Finds the point's foot on a triangle along the normal that is interpolated between the corners' normals (Phong).
+/// This normal and the gap are continuous across the edge to a neighbour, so that the force does not jump when a point
+/// slides from one triangle to the next. The gap is measured from the quadratic surface that belongs to the normals,
+/// which is above the triangle by
 ///   1/2 (sum of w_i n_i . a_i - (sum of w_i n_i) . (sum of w_i a_i))
 /// (w barycentric coordinates, a corners, n normals): in the middle of a chord h of a circle of radius r by h^2/(8r).
-/// So the normal is nearly the gradient of the gap, and a point that slides over the triangles of a curved surface
-/// hardly climbs up and down. `gradient` is the exact one, from the derivatives of the equation of the foot, so that
-/// forces along it add no energy.
+/// The normal is thus nearly the gradient of the gap, and a point that slides over the triangles of a curved surface
+/// hardly climbs up and down. `gradient` is the exact gradient, from the derivatives of the equation of the foot, so
+/// that forces along it add no energy.
 template <class T>
 FRONTALIS_LAW SurfaceFoot<T> surface_foot(const SurfaceTriangle<T>& triangle, const Vec3<T>& x)
 {
@@ -65,14 +65,14 @@ FRONTALIS_LAW SurfaceFoot<T> surface_foot(const SurfaceTriangle<T>& triangle, co
   T way = N::of(0), sum = T(1);
   for (int i = 0; i < 3; ++i)
     foot.weight[i] = foot.below[i];
-  // Each repetition multiplies the error by the height over the radius of curvature, whatever the direction's length.
+  // Fixed-point iteration: each repetition multiplies the error by the ratio of the height to the radius of curvature.
   for (int repetition = 0; repetition < 2; ++repetition)
   {
     for (int i = 0; i < 3; ++i)
       foot.inside[i] = N::max(foot.weight[i], N::of(0));
     sum = foot.inside[0] + foot.inside[1] + foot.inside[2];
     direction = foot.inside[0] * n[0] + foot.inside[1] * n[1] + foot.inside[2] * n[2];
-    // the lower limit applies where the normals are more than 78 degrees off the triangle's
+    // The lower limit applies where the interpolated normal is more than 78 degrees from the triangle's normal.
     way = above / N::max(dot(direction, area), N::of(0.2) * length);
     for (int i = 0; i < 3; ++i)
       foot.weight[i] = foot.below[i] - way * dot(foot.slope[i], direction);
@@ -92,7 +92,7 @@ FRONTALIS_LAW SurfaceFoot<T> surface_foot(const SurfaceTriangle<T>& triangle, co
   const T bulge =
       N::of(0.5) * (foot.inside[1] * dot(n[1], ab) + foot.inside[2] * dot(n[2], ac) - dot(foot.mean_normal, mean));
   foot.gap = way * stretch - bulge;
-  // The foot solves x = corner 0 + weight 1 * ab + weight 2 * ac + way * direction. bulges: derivatives by weights
+  // x = corner 0 + weight 1 * ab + weight 2 * ac + way * direction; bulges: derivatives of the bulge by the weights.
   const Vec3<T> side[3] = { { T(0), T(0), T(0) }, ab, ac };
   T bulges[3];
   for (int i = 0; i < 3; ++i)
@@ -109,8 +109,8 @@ FRONTALIS_LAW SurfaceFoot<T> surface_foot(const SurfaceTriangle<T>& triangle, co
   return foot;
 }
 
-/// Force on a corner of the triangle [N] while the force on the point is `pressed` times the gradient of the gap. With
-/// corner_turn() the corners' forces balance the point's in sum and moment, as the gap depends on relative places.
+/// Force on a corner of the triangle [N] if the force on the point is `pressed` times the gradient of the gap. With the
+/// moments of corner_turn(), the corners' forces balance that force in sum and moment.
 template <class T>
 FRONTALIS_LAW Vec3<T> corner_force(const SurfaceTriangle<T>& triangle, const SurfaceFoot<T>& foot, int corner,
                                    const T& pressed)
@@ -119,8 +119,8 @@ FRONTALIS_LAW Vec3<T> corner_force(const SurfaceTriangle<T>& triangle, const Sur
   return bulging * (triangle.normal[corner] - foot.mean_normal) - (foot.weight[corner] * pressed) * foot.gradient;
 }
 
-/// Force on a corner [N] while the force on the point is `along` the surface. The corners' forces balance the point's
-/// in sum and in moment: it acts at the point's height, so that forces normal to the triangle take up its couple.
+/// Force on a corner [N] if the force on the point is `along` the surface. The corners' forces balance that force in
+/// sum and in moment, for which they need parts normal to the triangle.
 template <class T>
 FRONTALIS_LAW Vec3<T> corner_drag(const SurfaceFoot<T>& foot, int corner, const Vec3<T>& along)
 {
@@ -128,8 +128,8 @@ FRONTALIS_LAW Vec3<T> corner_drag(const SurfaceFoot<T>& foot, int corner, const 
   return couple * foot.facet_normal - foot.below[corner] * along;
 }
 
-/// Generalised force on the normal of a corner [N m], as corner_force() is the force on its place: the gap depends on
-/// both. With both, contact adds no energy where the surface bends.
+/// Generalised force [N m] on the normal of a corner; corner_force() is the force on the corner's position. The gap
+/// depends on both, so that contact adds no energy on a bending surface if both are applied.
 template <class T>
 FRONTALIS_LAW Vec3<T> corner_turn(const SurfaceTriangle<T>& triangle, const SurfaceFoot<T>& foot, int corner,
                                   const T& pressed)
@@ -138,7 +138,7 @@ FRONTALIS_LAW Vec3<T> corner_turn(const SurfaceTriangle<T>& triangle, const Surf
          (Number<T>::of(-0.5) * pressed * foot.inside[corner]) * (triangle.corner[corner] - foot.mean_place);
 }
 
-/// Contribution of a corner's displacement to the triangle's displacement at the point [m]; the adjoint of
+/// Contribution of a corner's displacement to the displacement [m] of the triangle at the point; the adjoint of
 /// corner_drag(). In a small rigid motion of triangle and point, the contributions add up to the point's displacement.
 template <class T>
 FRONTALIS_LAW Vec3<T> carried(const SurfaceFoot<T>& foot, int corner, const Vec3<T>& displacement)

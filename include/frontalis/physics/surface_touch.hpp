@@ -8,21 +8,22 @@ namespace frontalis
 namespace physics
 {
 
-// Ranges over which the force on a point sets in. `opposed`: of the cosine between the point's own inward normal and
-// the normal of the surface that it touches; `upright`: of the cosine between that surface normal and its triangle's;
-// `rim`: of the distance beyond the rim of a surface, over the height of the rim's triangle.
+// Ranges over which the force on a point grows from zero to its full value, so that it does not jump. `opposed`: range
+// of the cosine between the point's own inward normal and the normal of the surface that it touches; `upright`: range
+// of the cosine between that surface normal and the normal of its triangle; `rim`: range of the distance beyond the rim
+// of a surface, divided by the height of the triangle at the rim.
 constexpr double opposed = 0.25;
 constexpr double least_upright = 0.2, upright = 0.4;
 constexpr double rim_begin = 0.1, rim_end = 0.3;
 
-/// Constants of a pair of a point of the tissue and a triangle of another surface of the tissue.
+/// Constants of a pair that may touch: a point of the tissue and a triangle of another surface of the tissue.
 template <class T>
 struct TouchingPair
 {
   T stiffness;  ///< of the point [N/m]
-  T softer[3];  ///< stiffness per area at the triangle's corners, over that at the point
+  T softer[3];  ///< stiffness per area at the triangle's corners, divided by that at the point
   T inner[3];   ///< 0 if the surface ends at the edge opposite to the corner, else 1
-  T overlap;    ///< gap at rest, where the depth is 0; not positive [m]
+  T overlap;    ///< gap at rest, not positive; the depth of contact is measured from it [m]
   T friction;   ///< Coulomb's coefficient
 };
 
@@ -31,8 +32,8 @@ template <class T>
 struct PairGrip
 {
   T stiffness;       ///< stiffness of the pair when it touched last [N/m]; 0: it does not touch
-  T pressed, along;  ///< as Grip::normal, Grip::along [N]
-  Vec3<T> stretch;   ///< displacement along the surface of the spring that makes the point stick [m]
+  T pressed, along;  ///< normal and tangential force, like Grip::normal and Grip::along [N]
+  Vec3<T> stretch;   ///< displacement, along the surface, of the spring that makes the point stick [m]
 };
 
 template <class T>
@@ -50,8 +51,8 @@ FRONTALIS_LAW T ramp(const T& x)
   return Number<T>::min(Number<T>::max(x, Number<T>::of(0)), Number<T>::of(1));
 }
 
-/// Stiffness of a pair in contact [N/m], that of its softer side. It is 0 beyond a rim, or if the surfaces do not face
-/// each other. `normal`: that of the tissue at the point, outward.
+/// Stiffness of a pair in contact [N/m], that of its softer side. The stiffness is 0 beyond a rim, and where the
+/// surfaces do not face each other. `normal`: outward normal of the tissue at the point.
 template <class T>
 FRONTALIS_LAW T pair_stiffness(const TouchingPair<T>& pair, const SurfaceFoot<T>& foot, const Vec3<T>& normal)
 {
@@ -71,9 +72,10 @@ FRONTALIS_LAW T pair_stiffness(const TouchingPair<T>& pair, const SurfaceFoot<T>
   return share * pair.stiffness * N::min(N::of(1), per_area / inside);
 }
 
-/// Forces between a point and a triangle, and the update of their grip. `gap`: measured from the pair's overlap;
-/// `stiffness`: pair_stiffness(); `slip`: the point's displacement relative to the triangle in this step, needed if it
-/// touched before; `response`: friction_response(). Without friction (`rubs` is false) the grip is the stiffness alone.
+/// Forces between a point and a triangle, and the update of their grip. `gap`: gap less the pair's overlap;
+/// `stiffness`: pair_stiffness(); `slip`: the point's displacement relative to the triangle in this step, used if they
+/// touched in the previous step; `response`: friction_response(). Without friction (`rubs` is false) the grip holds the
+/// stiffness alone.
 template <bool rubs, class T>
 FRONTALIS_LAW PairForce<T> touch_pair(const TouchingPair<T>& pair, const SurfaceTriangle<T>& triangle,
                                       const SurfaceFoot<T>& foot, const T& gap, const T& stiffness, const Vec3<T>& slip,
@@ -102,7 +104,7 @@ FRONTALIS_LAW PairForce<T> touch_pair(const TouchingPair<T>& pair, const Surface
     for (int i = 0; i < 3; ++i)
       force.corner[i] = force.corner[i] + corner_drag(foot, i, along);
     force.stored = held.stored;
-    // a point that leaves the surface loses the energy of its stretch, as in let_go()
+    // A point that leaves the surface loses the energy of its stretch, as in let_go().
     const T left = N::of(0.5 / sticking_stiffness) * grip.along * grip.along / N::max(grip.stiffness, N::of(1e-20));
     force.lost = N::select(touches, held.lost, left);
     const auto remembers = held.grip.normal > pair.stiffness * N::of(forgotten_depth);

@@ -15,8 +15,8 @@ struct SymmetricEigen
   Matrix3<T> vector;
 };
 
-/// Cyclic Jacobi rotations (Golub & Van Loan, Matrix Computations, 8.5) in a fixed number of sweeps without branches:
-/// full single precision after four, double precision after six.
+/// Cyclic Jacobi rotations (Golub & Van Loan, Matrix Computations, 8.5) in a fixed number of sweeps without branches.
+/// Four sweeps reach full single precision, six full double precision.
 template <class T>
 FRONTALIS_LAW SymmetricEigen<T> symmetric_eigen(Matrix3<T> A)
 {
@@ -31,7 +31,7 @@ FRONTALIS_LAW SymmetricEigen<T> symmetric_eigen(Matrix3<T> A)
     for (int pair = 0; pair < 3; ++pair)
     {
       const int p = pair == 2 ? 1 : 0, q = pair == 0 ? 1 : 2, r = 3 - p - q;
-      // tangent of the smaller angle that zeroes a_pq
+      // Tangent of the smaller angle that zeroes a_pq.
       const T off = A.a[p][q];
       const T half = N::of(0.5) * (A.a[q][q] - A.a[p][p]);
       const T root = N::sqrt(half * half + off * off);

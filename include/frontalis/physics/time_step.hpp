@@ -44,9 +44,9 @@ FRONTALIS_LAW T larger_or_none(const T& a, const T& b)
 ///
 /// Second derivatives of the neo-Hookean energy (materials/neo_hookean.hpp) are bounded term by term, separately for
 /// the volumetric and the isochoric part. The growth of these bounds since rest is added to the bound at rest. The
-/// nominal stress of fibres is J f(l), f the tension at the stretch l: its derivatives by l grow with J, those by J
-/// with f and |cof F| = sqrt(3 along). At full activation they stay below their bound at rest (muscle_fibre.hpp) times
-/// the larger of J and sqrt(along I1 / 3).
+/// nominal stress of fibres is J f(l) with the tension f at the stretch l; its derivatives with respect to l grow with
+/// J, those with respect to J grow with f and |cof F| = sqrt(3 along). At full activation these derivatives stay below
+/// their bound at rest (muscle_fibre.hpp) times the larger of J and sqrt(along I1 / 3).
 template <class T, class S>
 FRONTALIS_LAW T voxel_stiffness_now(T at_rest, const NeoHookean<T>& material, const Kinematics<T>& k, const S* weight,
                                     S half_sum)
@@ -57,7 +57,7 @@ FRONTALIS_LAW T voxel_stiffness_now(T at_rest, const NeoHookean<T>& material, co
     for (int j = 0; j < 3; ++j)
       along = along + k.cofactor.a[i][j] * k.cofactor.a[i][j] * T(weight[j]);
   const T largest = N::max(T(weight[0]), N::max(T(weight[1]), T(weight[2])));
-  // d2J = 2 F : cof dF, and |cof dF| is at most |dF|^2 / sqrt(3)
+  // The second derivative of J is 2 F : cof dF, and |cof dF| is at most |dF|^2 / sqrt(3).
   const T turning = N::of(2 / 1.7320508075688772) * N::sqrt(k.I1) * largest;
   const T dilatation = N::max(k.J - N::of(1), N::of(1) - k.J);
   const T volumetric = along - N::of(1) + dilatation * turning;
@@ -65,7 +65,7 @@ FRONTALIS_LAW T voxel_stiffness_now(T at_rest, const NeoHookean<T>& material, co
   const T bend = isochoric_bend(g, k.J);
   const T isochoric = N::of(0.5) * k.I1 * bend * along - N::of(2) * g.slope * N::sqrt(k.I1 * along * largest) +
                       N::of(2) * g.value * largest - N::of(0.5) * g.slope * k.I1 * turning;
-  // the same at F = 1: I1 = 3, cof F = 1, g' = -2/3
+  // The value of `isochoric` at F = 1, where I1 = 3, cof F = 1 and g' = -2/3.
   const T isochoric_at_rest = N::of(5.0 / 3) + N::of(4.0 / 3) * N::sqrt(N::of(3) * largest) + N::of(4) * largest;
   const T grown = material.kappa * volumetric + material.mu * N::max(isochoric - isochoric_at_rest, N::of(0));
   const T elastic = material.kappa + material.mu * (N::of(2) * largest - N::of(2.0 / 3));

@@ -7,7 +7,8 @@ namespace frontalis
 namespace physics
 {
 
-/// Weights of a voxel's corners b = i + 2j + 4k at coordinates (x, y, z), 0..1 inside the voxel; they may be outside.
+/// Weights of a voxel's corners b = i + 2j + 4k at the coordinates (x, y, z), which are 0 to 1 inside the voxel and may
+/// lie outside of it.
 template <class T>
 FRONTALIS_LAW void trilinear_weights(T x, T y, T z, T* weight)
 {

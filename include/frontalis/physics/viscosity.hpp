@@ -45,10 +45,10 @@ FRONTALIS_LAW void relax(const T& share, const T& decay, const Symmetric3<T>& S,
     H.a[n] = decay * H.a[n] + gain * S.a[n];
 }
 
-/// Number of tensors stored per voxel: one per term, and for two terms also their sum, which is all that a step reads.
+/// Number of tensors stored per voxel: one per term. Two terms also store their sum, which is all that a step reads.
 FRONTALIS_LAW constexpr int relaxed_tensors(int terms) { return terms == 2 ? 3 : terms; }
 
-/// P -= F H.
+/// Subtracts the relaxed stress: P -= F H.
 template <class T>
 FRONTALIS_LAW void take_relaxed(const Kinematics<T>& k, const Symmetric3<T>& H, Matrix3<T>& P)
 {
@@ -62,7 +62,7 @@ FRONTALIS_LAW void take_relaxed(const Kinematics<T>& k, const Symmetric3<T>& H, 
   }
 }
 
-/// H : E, where E = (F^T F - 1) / 2 is the Green-Lagrange strain.
+/// The product H : E with the Green-Lagrange strain E = (F^T F - 1) / 2.
 template <class T>
 FRONTALIS_LAW T along_strain(const Kinematics<T>& k, const Symmetric3<T>& H)
 {
@@ -78,8 +78,9 @@ FRONTALIS_LAW T along_strain(const Kinematics<T>& k, const Symmetric3<T>& H)
 }
 
 /// Change of H : E, at constant strain, when the relaxed stress H changes from `before` to `after` at the end of a
-/// step; the rest of the change of H : E is the work against H, the sum of H : dE. A stress works along the mean of the
-/// motions before and after it, so the strain is the mean of those at the start and end of the step.
+/// step. (The rest of the change of H : E is the work against H, the sum of H : dE.) A stress does work along the mean
+/// of the motions before and after it, so that the strain here is the mean of the strains at the start and at the end
+/// of the step.
 template <class T>
 FRONTALIS_LAW T relaxation_work(const Kinematics<T>& begin, const Kinematics<T>& end, const Symmetric3<T>& before,
                                 const Symmetric3<T>& after)

@@ -61,7 +61,7 @@ FRONTALIS_LAW Kinematics<T> kinematics(const T* x, const T* y, const T* z, const
   Kinematics<T> k;
   const T* component[3] = { x, y, z };
   const T one = Number<T>::of(1);
-  T stretch[3];  // of the axes, minus 1
+  T stretch[3];  // stretch of each axis, minus 1
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
     {

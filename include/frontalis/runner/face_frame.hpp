@@ -15,13 +15,15 @@ bool is_finite(const SkinState& skin);
 struct BodyFrame
 {
   Reaction reaction;    ///< face axes [N]; moment about the body's point that rests at the face frame's origin [N m]
-  RigidTransform pose;  ///< motion from its place at rest, in the face frame
+  RigidTransform pose;  ///< motion from the rest pose, in the face frame
 };
-/// One per entry of touched_bodies(model), in the latest step; none if the backend computes no contact.
+/// Motions and reactions of touched_bodies(model) in the latest step, in their order; empty if the backend computes no
+/// contact.
 std::vector<BodyFrame> bodies_in_face_frame(const Solver& solver, const Model& model);
-/// One per bone of the model. If `forces`, its reaction is the force of the tissue whose nodes it holds, without the
-/// inertia and viscosity of that tissue and without shells, and of the tissue that its bodies touch; else it is 0.
-/// Sliding nodes and nodes attached at true boundaries are not counted.
+/// Motions and reactions of the model's bones, in their order. With `forces`, the reaction of a bone is the elastic and
+/// fibre force of the tissue whose nodes the bone holds, plus that of the tissue that touches its bodies. Inertia,
+/// viscosity and shells of held tissue, sliding nodes, and nodes attached at true boundaries are not counted. Without
+/// `forces` it is 0.
 std::vector<BodyFrame> bones_in_face_frame(Solver& solver, const Model& model, bool forces);
 
 }  // namespace frontalis

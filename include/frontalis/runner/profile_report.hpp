@@ -10,7 +10,7 @@ namespace frontalis
 /// The measured error and cost of the model's accuracy profile, in one sentence; empty if they were not measured.
 std::string measured_profile(const Model& model);
 
-/// A face with this real-time factor or a higher one counts as running in real time.
+/// Smallest real-time factor with which a face counts as running in real time.
 constexpr double sufficient_real_time_factor = 0.95;
 
 /// The real-time factor, in one sentence. If it is not sufficient, the sentence also names the most accurate of the

@@ -17,9 +17,9 @@ namespace frontalis
 /// The state of a face that is published once per frame. Positions are in the face frame [m].
 struct Frame
 {
-  double time = 0;              ///< simulated time since the latest reset times Model::time_scaling [s]
+  double time = 0;              ///< simulated time since the latest reset, multiplied by Model::time_scaling [s]
   double wall_time = 0;         ///< wall time since the runner started [s]
-  double real_time_factor = 0;  ///< simulated over wall time, over about the last second
+  double real_time_factor = 0;  ///< simulated time divided by wall time, over about the last second
   double time_step = 0;         ///< of the solver [s]
   std::int64_t steps = 0;       ///< solver steps since the latest reset
   std::uint64_t sequence = 0;   ///< number of the frame
@@ -29,13 +29,14 @@ struct Frame
   std::vector<std::array<double, 3>> displacements;
   std::vector<BodyFrame> bodies;  ///< bodies that tissue touches, one per entry of touched_bodies(model)
   std::vector<BodyFrame> bones;   ///< one per bone
-  bool has_bone_forces = false;   ///< while RunnerSettings::wants_bone_forces; else reactions of bones are 0
+  /// whether RunnerSettings::wants_bone_forces was true; otherwise reactions of bones are 0
+  bool has_bone_forces = false;
   std::vector<float> activation;  ///< present activation of each muscle, 0..1
   Monitor monitor;                ///< energies and volume ratios, renewed about once per second of wall time
   double seconds_per_step = 0;    ///< wall time per step since the latest renewal of the monitor; 0: not known
   std::size_t solver_bytes = 0;   ///< memory of the solver's arrays, without the model
   GuardCounts guard;              ///< since the runner started
-  bool failed = false;            ///< true: the motion was stopped; the skin is the last good one
+  bool failed = false;            ///< true: the motion was stopped; the skin is the last one without a fault
   std::string failure;            ///< the reason, in one sentence
 };
 
@@ -57,7 +58,7 @@ struct RunnerSettings
   std::function<std::optional<SkinField>()> wanted_field{};
   /// Called once per frame in the runner's thread. If it is not set or returns false, no displacements are copied.
   std::function<bool()> wants_displacements{};
-  /// The same as wants_displacements for the forces on bones.
+  /// Called once per frame in the runner's thread. If it is not set or returns false, forces on bones are not computed.
   std::function<bool()> wants_bone_forces{};
 };
 
@@ -87,25 +88,25 @@ public:
   /// is thrown.
   void set_bone(const std::string& name, const RigidTransform& motion);
 
-  /// Switches an effect off or on between two frames and returns once that is done. Throws the Errors of
+  /// Switches an effect off or on between two frames and returns when the switch is done. Throws the Errors of
   /// Solver::switch_effect.
   void switch_effect(Effect effect, bool on);
-  /// The effects that are switched on.
   EffectSet effects() const;
 
-  /// Changes the frames per second of wall time, 0.1 to 1000; 0: the model's. Throws an Error outside of that.
+  /// Changes the number of frames per second of wall time, 0.1 to 1000; 0: that of the model. Throws an Error if it is
+  /// out of range.
   void set_frame_rate(double rate);
 
   void pause(bool paused);
   bool paused() const;
   /// Puts the tissue and the bones back to rest and sets all activations and the time to 0. Clears a failure, and ends
-  /// a call of step() that is under way. Returns once that is done; throws an Error if the solver fails to reset.
+  /// a call of step() that is under way. Returns when the reset is done; throws an Error if the solver fails to reset.
   void reset();
   /// Ends a call of step() that is under way; its caller gets an Error.
   void cancel_step();
   /// Pauses the face, advances it by exactly `seconds` of simulated time and returns the frame reached. Activations and
-  /// bones move linearly to what was set last. Throws an Error if the motion fails, if the step is ended early, or if
-  /// another step is under way.
+  /// bones move linearly to their latest set values. Throws an Error if the motion fails, if the step is ended early,
+  /// or if another step is under way.
   Frame step(double seconds);
 
   const Model& model() const;

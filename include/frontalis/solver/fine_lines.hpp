@@ -12,24 +12,24 @@ namespace frontalis
 class FineLines
 {
 public:
-  /// Null if the skin has no film. With `own_thread` a thread of its own finds the heights of the lines; else add_to()
-  /// finds them, the same in every run.
+  /// Returns null if the skin has no film. With `own_thread`, a separate thread finds the heights of the lines; without
+  /// it, add_to() finds them, with the same result in every run.
   static std::unique_ptr<FineLines> make(std::shared_ptr<const Model> model, bool own_thread);
 
   ~FineLines();
   FineLines(const FineLines&) = delete;
   FineLines& operator=(const FineLines&) = delete;
 
-  /// Takes the skin of a solver, in the local frame. Places the vertices that the film has added on a smooth surface
-  /// through the carried ones, moves them along its normals by the height of the lines, finds the normals anew, and
-  /// sets SkinState::line_height. If a thread of its own finds the heights, `wait` tells whether to wait for those of
-  /// this skin or to take the latest that are ready.
+  /// Adds lines to the skin of a solver, in the local frame. Puts the vertices that the film has added onto a smooth
+  /// surface through those that follow the voxels, moves all of them along the normals by the height of the lines,
+  /// finds the normals anew, and sets SkinState::line_height. With a separate thread, `wait` tells whether to wait for
+  /// the heights of this skin or to use the latest that are ready.
   void add_to(SkinState& skin, bool wait);
 
-  /// Makes the skin flat, as it is at rest, whatever is being found.
+  /// Makes the skin flat, as it is at rest, and discards heights that are still being computed.
   void reset();
 
-  /// Processor time that the latest heights took [s].
+  /// Processor time spent on the latest heights [s].
   double seconds() const;
 
 private:

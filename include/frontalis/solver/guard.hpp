@@ -17,11 +17,11 @@ enum class Instability
   none,
   not_finite,  ///< a displacement is NaN or Inf
   energy,      ///< more energy than muscles, loads and bones can have supplied, or than the ledger explains
-  hourglass,   ///< more energy in hourglass modes alone than that
+  hourglass,   ///< more energy in hourglass modes alone than that bound
   inverted,    ///< more voxels are inverted than allowed
-  time_step,   ///< steps were longer than critical
+  time_step,   ///< steps were longer than the critical time step
   past_rim,    ///< a sliding node is far past the rim of its surface's field
-  inside_body  ///< tissue is deeper inside of a body than its field reaches
+  inside_body  ///< tissue is deeper inside of a body than the body's field reaches
 };
 
 /// The finding in words that complete the sentence "the motion is unstable: ".
@@ -29,15 +29,16 @@ std::string words_for(Instability instability);
 
 struct GuardSettings
 {
-  int interval = 0;              ///< steps between two checks; 0: Solver::steps_per_check
-  double slower = 0.5;           ///< factor on the time step after a finding, applied once per try
-  int recovery = 4;              ///< checks without a finding before the full time step is used again
-  int tries = 3;                 ///< failed tries in a row after which the motion is stopped
-  double inverted_share = 0.05;  ///< fraction of voxels that may be inverted (J <= 0), or that of the last good check
-  bool ledger = false;           ///< judges energy by the ledger's imbalance; needs SolverSettings::ledger
+  int interval = 0;     ///< steps between two checks; 0: Solver::steps_per_check
+  double slower = 0.5;  ///< factor on the time step after a finding, applied once per try
+  int recovery = 4;     ///< number of checks without a finding before the full time step is used again
+  int tries = 3;        ///< failed tries in a row after which the motion is stopped
+  /// fraction of voxels that may be inverted (J <= 0); more are allowed if the last good check had more
+  double inverted_share = 0.05;
+  bool ledger = false;  ///< judge energy by the imbalance of the ledger; needs SolverSettings::ledger
 };
 
-/// Events since the guard was made.
+/// Counts of a guard's actions since it was made.
 struct GuardCounts
 {
   std::int64_t checks = 0;
@@ -46,23 +47,24 @@ struct GuardCounts
   double seconds = 0;                      ///< wall seconds spent in checks and snapshots
 };
 
-/// Why a motion was stopped.
+/// Describes why a motion was stopped.
 struct InstabilityReport
 {
   Instability kind = Instability::none;
   double time = 0;                    ///< simulated time of the finding [s]
   std::int32_t voxel = -1;            ///< the worst voxel
-  double jacobian = 1;                ///< its J
-  std::array<double, 3> scene{};      ///< its centre at rest, scene frame [m]
-  std::array<double, 3> face{};       ///< the same in the face frame [m]
-  std::vector<std::string> material;  ///< its materials, the one with the largest fraction first
-  std::vector<std::string> muscle;    ///< muscles with fibres in it, the one with the highest tension first
-  std::string effect;                 ///< name of the effect that is most likely the cause
-  std::string advice;                 ///< what to change
-  std::string text() const;           ///< the whole report in two or three sentences
+  double jacobian = 1;                ///< J of the worst voxel
+  std::array<double, 3> scene{};      ///< centre of the worst voxel at rest, scene frame [m]
+  std::array<double, 3> face{};       ///< centre of the worst voxel at rest, face frame [m]
+  std::vector<std::string> material;  ///< materials of the worst voxel, the one with the largest fraction first
+  std::vector<std::string> muscle;  ///< muscles with fibres in the worst voxel, the one with the highest tension first
+  std::string effect;               ///< name of the effect that is most likely the cause
+  std::string advice;               ///< what to change
+  std::string text() const;         ///< the whole report in two or three sentences
 };
 
-/// The motion was stopped. The solver is at the latest good state, or at the previous one if the latest failed too.
+/// Thrown when the motion was stopped. The solver is then at the latest good state, or at the one before if that failed
+/// too.
 class Unstable : public Error
 {
 public:
@@ -77,11 +79,11 @@ public:
 /// good check. At a time t later the energy may be at most twice (sqrt(E + W) + t sqrt(sum of f^2 / (2 m)))^2. Here f
 /// is gravity and surface loads on a node of mass m, and W is the sum of
 /// - the energy of a strain of 1e-4 everywhere;
-/// - the work that fibres can do: tension times volume, times a stretch of 1.2, and of 0.3 more if they are passive
-/// too;
-/// - what bones and prescribed nodes can have brought: with d the length of their paths in that time, d^2 times four
-///   times the bound of the stiffness of the voxels at them;
-/// - what viscous stresses can give back.
+/// - the work that fibres can do: active tension times volume times 1.2, the range of stretch in which they pull, plus
+/// 0.3 times tension times volume if they have a passive part;
+/// - four times the bound of the stiffness of the voxels at bones and prescribed nodes times d^2, where d is the length
+/// of the paths of these bones and nodes in the time t;
+/// - the energy that viscous stresses can give back.
 class Guard
 {
 public:
@@ -97,8 +99,8 @@ public:
   void advance(double seconds, const Controls& target);
   /// Checks the present state. After a finding it restores a good state, or throws Unstable.
   void check();
-  /// Like Solver::settle, with the checks of advance() but for the ledger's: the ledger is opened again. Throws as both
-  /// do.
+  /// Like Solver::settle, with the checks of advance(), except that of the ledger, which is opened again. Throws the
+  /// errors of both.
   Equilibrium settle(const Controls& target, double tolerance, double seconds,
                      const std::function<bool(const Equilibrium&)>& go_on = {});
   /// Accepts the present state as good without a check. Call it after reset(), or after displacements were set.

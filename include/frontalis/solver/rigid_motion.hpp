@@ -18,10 +18,11 @@ RigidTransform inverse(const RigidTransform& pose);
 /// Rotation by a rotation vector (axis times angle [rad]) about the origin, then a translation [m].
 RigidTransform rigid_motion(const std::array<double, 3>& rotation, const std::array<double, 3>& translation);
 
-/// Largest distance [m] that a corner of the box between the origin and `corner` [m] moves between two poses.
+/// Largest displacement [m] of a corner of the box between the origin and `corner` [m] from one pose to another.
 double farthest_way(const RigidTransform& from, const RigidTransform& to, const std::array<double, 3>& corner);
 
-/// Bound [m] of the path of any corner along interpolate(): its highest speed times the duration.
+/// Bound [m] of the length of the path of any corner of that box along interpolate(): the highest speed times the
+/// duration.
 double fastest_way(const RigidTransform& from, const RigidTransform& to, const std::array<double, 3>& corner);
 
 }  // namespace frontalis

@@ -15,11 +15,11 @@ struct ShellMesh
 {
   struct Triangle
   {
-    /// Its corners, then the vertices beyond the edges opposite to them; corner 0 where the layer ends.
+    /// The corners, then the vertices beyond the edges opposite to them; corner 0 takes the place of a missing vertex.
     std::array<std::int32_t, 6> vertex;
     physics::ShellTriangle<double> rest;
-    /// Bounds of the largest eigenvalues of its stiffness [N/m]: in the membrane, of its corners, at any deformation;
-    /// in bending, of all six vertices, at rest.
+    /// Bounds of the largest eigenvalues of the stiffness [N/m]: `membrane`, on the three corners, at any deformation;
+    /// `bending`, on all six vertices, at rest.
     double membrane, bending;
 
     bool has_beyond(std::size_t edge) const { return vertex[3 + edge] != vertex[0]; }
@@ -28,14 +28,14 @@ struct ShellMesh
   explicit ShellMesh(const Model& model);
 
   std::vector<Triangle> triangles;
-  Binding binding;  ///< of the vertices, sorted by voxel
+  Binding binding;  ///< binding of the vertices, sorted by voxel
 
 private:
   void add(const Model& model, const Shell& shell);
 };
 
-/// A triangle from the rest positions of its vertices [m]. `beyond[i]`: whether there is a vertex 3 + i. Where there is
-/// none, no bending moment passes through the edge.
+/// Makes a triangle from the rest positions of its vertices [m]. `beyond[i]`: whether there is a vertex 3 + i beyond
+/// edge i; if not, no bending moment passes through the edge.
 ///
 /// A surface z = 1/2 (k11 x^2 + k22 y^2 + k12 x y) over the triangle's plane gives the outer vertices the heights T k,
 /// hence k = T^-1 times the change of heights. The energy is 1/2 A k^T C k, C = D [1 nu 0; nu 1 0; 0 0 (1 - nu) / 2]

@@ -20,7 +20,7 @@ namespace frontalis
 constexpr int motion_generation = 13;
 
 /// A name of backend_names(): "auto" (the GPU if there is one, else the CPU), "reference" (double precision, plain
-/// loops; slow, the reference of every test), "cpu" (SIMD, all cores), "cuda".
+/// loops; slow, but tests compare the others with it), "cpu" (SIMD, all cores), "cuda".
 using Backend = std::string;
 
 /// The values of SolverSettings::backend in this build, "auto" first.
@@ -36,17 +36,17 @@ struct SolverSettings
   Backend backend = "auto";
   int threads = 0;       ///< CPU threads; 0: one per core
   double time_step = 0;  ///< [s]; 0: chosen by the solver. Steps above the critical time step are refused
-  bool ledger = false;   ///< keeps an account of energies (Solver::ledger); makes steps slower
+  bool ledger = false;   ///< keep an account of energies (Solver::ledger); makes steps slower
 };
 
-/// External inputs of the model.
+/// External inputs of the model: activations of muscles and motions of bones.
 struct Controls
 {
   std::vector<float> activation;     ///< one per muscle, 0..1
   std::vector<RigidTransform> bone;  ///< one per bone: motion from its rest pose, in the local frame
 };
 
-/// Controls at a fraction (0..1) between two; bones rotate about the shortest axis.
+/// Controls at a fraction (0..1) between two controls; bones rotate about the shortest axis.
 Controls interpolate(const Controls& from, const Controls& to, double fraction);
 
 /// The complete state of a motion at one moment. Only the solver that made it can read it.
@@ -72,20 +72,20 @@ public:
   /// Returns to rest at time 0 with all controls at zero.
   virtual void reset() = 0;
 
-  /// Advances by exactly `seconds` of simulated time in equal steps of at most the safe time step. Activations and bone
-  /// poses change linearly (poses: rotation about the shortest axis) to `target` over that time. Throws Error, with the
-  /// state unchanged, if the target is not finite, outside 0..1 or of the wrong length. Throws Diverged, after which
-  /// only reset() and restore() help.
+  /// Advances by exactly `seconds` of simulated time in equal steps of at most the safe time step. Over that time
+  /// activations and bone poses change linearly to `target`; poses rotate about the shortest axis. Throws Error, with
+  /// the state unchanged, if the target is not finite, outside 0..1 or of the wrong length. Throws Diverged, after
+  /// which only reset() and restore() are of use.
   virtual void advance(double seconds, const Controls& target) = 0;
 
   /// Throws the Error that advance() would throw: after divergence, or for an invalid duration or target.
   virtual void check(double seconds, const Controls& target) const = 0;
 
-  /// Dynamic relaxation (Underwood 1983): controls go to `target` at once, and damping is critical for the lowest
-  /// frequency of the motion. It ends when the remaining motion, estimated from speed, damping and lowest frequency, is
-  /// within `tolerance` of the displacement (mass-weighted norms), or after `seconds` of simulation. Viscous stresses
-  /// are fully relaxed meanwhile. `go_on` is called with the progress and stops it by returning false. Throws Error as
-  /// advance().
+  /// Dynamic relaxation (Underwood 1983): controls are set to `target` at once, and damping is critical for the lowest
+  /// frequency of the motion. Viscous stresses are fully relaxed meanwhile. The relaxation ends when the remaining
+  /// motion, estimated from speed, damping and lowest frequency, is within `tolerance` of the displacement
+  /// (mass-weighted norms), or after `seconds` of simulated time. `go_on` is called with the progress and ends the
+  /// relaxation by returning false. Throws Error like advance().
   virtual Equilibrium settle(const Controls& target, double tolerance, double seconds,
                              const std::function<bool(const Equilibrium&)>& go_on = {}) = 0;
 
@@ -94,11 +94,11 @@ public:
   /// Restores a snapshot of this solver; the motion then continues with the same bits. Throws Error on a snapshot of
   /// another solver.
   virtual void restore(const Snapshot& snapshot) = 0;
-  /// save() as bytes, for a solver of an equal model in another process, on the same machine and with the same
-  /// settings. unpack() throws Error on anything else, and leaves the state unchanged.
+  /// pack() gives the state of save() as bytes, for a solver of an equal model in another process with the same
+  /// settings on the same machine. unpack() throws Error on other bytes, and then leaves the state unchanged.
   virtual std::string pack() = 0;
   virtual void unpack(const std::string& bytes) = 0;
-  /// Steps between two checks of the guard: they take about a hundred times as long as monitor() and save() together.
+  /// Number of steps between two checks of the guard, about a hundred times as long as monitor() and save() together.
   virtual int steps_per_check() const = 0;
   /// Limits steps to this fraction (0..1] of the safe time step; initially 1. Throws Error if it is out of range.
   virtual void slow_down(double share) = 0;
@@ -106,7 +106,7 @@ public:
   virtual double time() const = 0;       ///< [s] since reset
   virtual double time_step() const = 0;  ///< largest step that the solver would take now [s]
   virtual const Controls& controls() const = 0;
-  /// Present activation of each muscle: that of the controls, delayed by the muscles' rise and fall times.
+  /// Present activation of each muscle: that of the controls, delayed by the muscle's rise and fall times.
   virtual const std::vector<float>& activation() const = 0;
 
   /// The effects of the model that are switched on. reset() does not change them.
@@ -125,9 +125,9 @@ public:
   virtual Monitor monitor() = 0;
   /// Throws Error if SolverSettings::ledger was not set or the backend keeps no ledger.
   virtual EnergyLedger ledger() = 0;
-  /// Forces of the latest step, one per entry of touched_bodies(model); none if the backend does not compute them.
+  /// Forces of the latest step, one per entry of touched_bodies(model); empty if the backend does not compute them.
   virtual std::vector<Reaction> reactions() const { return {}; }
-  /// Present poses of touched_bodies(model), in the local frame; none if the backend does not compute them.
+  /// Present poses of touched_bodies(model), in the local frame; empty if the backend does not compute them.
   virtual std::vector<RigidTransform> bodies() const { return {}; }
   virtual Profile profile() const = 0;
 

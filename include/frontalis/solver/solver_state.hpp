@@ -22,7 +22,7 @@ enum class SkinField
 {
   strain,  ///< largest principal Green-Lagrange strain
   stress,  ///< von Mises stress [Pa] of the Cauchy stress of materials and fibres, without viscous stresses
-  lines    ///< height of fine lines over the skin [m]; a solver, which does not know of them, gives 0
+  lines    ///< height of fine lines over the skin [m]; 0 in a solver, since FineLines adds the lines to frames later
 };
 
 /// Energies [J], summed in double precision, and the state of the worst voxel.
@@ -36,10 +36,12 @@ struct Monitor
   std::int64_t inverted = 0;         ///< voxels with J <= 0
   double critical_time_step = 0;     ///< present value from the bound at nodes [s] (physics/time_step.hpp)
   std::int32_t stiffest_voxel = -1;  ///< stiffest voxel at the node that sets the critical step
-  double step_share = 0;             ///< latest time step over the present critical one (model's TimeStepEstimate)
-  std::int64_t past_rim = 0;         ///< sliding nodes past the rim of their surface's field: they keep their plane
-  std::int32_t lost_node = -1;       ///< a node that is more than 4 mm past the rim; -1: none
-  std::int64_t lost_points = 0;  ///< contact points deeper in a body than its field reaches: nothing pushes them out
+  double step_share = 0;  ///< latest time step divided by the present critical one (of the model's TimeStepEstimate)
+  /// number of sliding nodes past the rim of their surface's field, which keep their latest plane
+  std::int64_t past_rim = 0;
+  std::int32_t lost_node = -1;  ///< a node that is more than 4 mm past the rim; -1: none
+  /// number of contact points deeper in a body than its field reaches, which nothing pushes out
+  std::int64_t lost_points = 0;
   bool finite = true;
 };
 
@@ -61,7 +63,7 @@ struct EnergyTerm
 struct EnergyLedger
 {
   double initial = 0;             ///< stored energy when the ledger was opened
-  std::vector<EnergyTerm> terms;  ///< those of empty_ledger(), where they are documented
+  std::vector<EnergyTerm> terms;  ///< all terms of empty_ledger(), which documents them
   double largest = 0;             ///< largest magnitude of the terms and of `initial` so far
 
   /// Value of a term. Throws Error if there is none of this name.
@@ -76,11 +78,11 @@ struct EnergyLedger
 struct Equilibrium
 {
   bool reached = false;
-  double residual = 0;  ///< estimate of the remaining motion over the displacement
-  double seconds = 0;   ///< simulated
+  double residual = 0;  ///< estimated remaining motion divided by the displacement
+  double seconds = 0;   ///< simulated time [s]
 };
 
-/// Wall seconds spent since construction or reset.
+/// Wall seconds that the solver has spent since construction or reset.
 struct Profile
 {
   double stepping = 0;

@@ -38,13 +38,13 @@ struct ModelMaker
 
 struct AccuracyPlan
 {
-  /// Closed form of the displacement at equilibrium [m] at a rest position on the skin [m], both in the face frame. If
-  /// set, errors are computed against it at equilibrium only, and no reference solution with finer voxels is needed.
+  /// Closed form of the displacement at equilibrium [m] as a function of the rest position on the skin [m], in the face
+  /// frame. If it is set, errors are those from this form at equilibrium, and no reference with finer voxels is needed.
   std::function<Vector3(const Vector3&)> exact;
   AccuracySetting standard;               ///< the baseline; each sweep varies one of its knobs
   std::vector<AccuracyProfile> profiles;  ///< profiles of the scene, measured as further settings
-  std::vector<std::string> knobs;         ///< knobs to vary one at a time; empty: all, and combinations
-  std::vector<double> edges;  ///< voxel edges [m], coarse to fine; without `exact` the last is the reference's
+  std::vector<std::string> knobs;         ///< knobs to vary one at a time; empty: all knobs, and combinations of them
+  std::vector<double> edges;  ///< voxel edges [m], coarse to fine; without `exact` the last one is the reference's
   ActivationHistory history;
   double frame_rate = 30;  ///< published skins per simulated second [1/s]
   std::string folder;      ///< folder that stores the results of finished settings
@@ -64,8 +64,8 @@ struct VariantCost
 {
   std::string machine;      ///< processor or device, number of threads; empty: not measured
   double step = NAN;        ///< wall seconds per step, median of repeated timings
-  double spread = NAN;      ///< interquartile range of the timings over their median
-  double processors = NAN;  ///< processor time of the solver while timed, over the time available
+  double spread = NAN;      ///< interquartile range of the timings divided by their median
+  double processors = NAN;  ///< processor time of the solver during the timings, divided by the time available
   double skin = NAN;        ///< wall seconds per published skin
   double memory = NAN;      ///< host memory of model and solver [bytes]
   double build = NAN;       ///< wall seconds to bake the model
@@ -74,7 +74,7 @@ struct VariantCost
   void archive(ByteArchive& archive);
 };
 
-/// The figures of one setting.
+/// The measured figures of one setting.
 struct AccuracyRow : VariantCost
 {
   std::string name;  ///< differences from the standard setting in words
@@ -84,13 +84,13 @@ struct AccuracyRow : VariantCost
   SkinError settled;      ///< error in the settled state
   double averaged = NAN;  ///< RMS error of the skin averaged over AccuracyFindings::averaged_over [m]
   double landmark = NAN;  ///< largest error of a landmark in any phase [m]
-  double energy = NAN;    ///< imbalance of the energy ledger over its largest term
-  double cost = NAN;      ///< wall seconds per simulated second, skins published at the scene's frame rate
+  double energy = NAN;    ///< imbalance of the energy ledger divided by its largest term
+  double cost = NAN;      ///< wall seconds per simulated second, with skins published at the scene's frame rate
   double steps = NAN;     ///< steps per simulated second
   double voxels = NAN;
 };
 
-/// The rows that vary one knob.
+/// Indices of the rows in which one knob varies.
 struct KnobLine
 {
   std::string knob, words;        ///< names on the command line and in plots
@@ -102,9 +102,9 @@ struct AccuracyFindings
   bool complete = true;  ///< false: interrupted; results of finished settings are stored
   std::vector<AccuracyRow> rows;
   std::vector<KnobLine> knobs;
-  std::vector<std::size_t> front;  ///< indices of rows that none beats in cost and error (Pareto front), cheapest first
+  std::vector<std::size_t> front;  ///< indices of the Pareto-optimal rows in cost and error, cheapest first
   AccuracySetting standard, reference;
-  bool closed_form = false;    ///< errors refer to the closed form instead of the reference
+  bool closed_form = false;    ///< whether errors are relative to the closed form instead of the reference
   double motion = 0;           ///< largest RMS displacement of the reference's skin in any phase [m]
   double reference_error = 0;  ///< estimated RMS error of the reference [m]
   double averaged_over = 0;    ///< standard deviation of the Gaussian that averages displacements [m]; 0: none
@@ -113,18 +113,18 @@ struct AccuracyFindings
   std::vector<std::string> notes;  ///< sentences about checks of the reference and settings that were left out
 };
 
-/// Called with the name of the setting being measured, its completed fraction (0..1) and an estimate of the wall
-/// seconds for the settings queued after it. Returning false interrupts the study.
+/// Called with the name of the setting that is being measured, its completed fraction (0..1), and an estimate of the
+/// wall seconds for all following settings. Returning false interrupts the study.
 using AccuracyProgress = std::function<bool(const std::string& setting, double done, double seconds_left)>;
 
 std::vector<std::string> knob_names();
-/// Measures the error and the cost of each setting. Throws Error on unknown knobs, a budget that is too small for a
-/// comparison, a reference that diverges and a folder that cannot be written.
+/// Measures the error and the cost of each setting. Throws Error if a knob is unknown, the budget is too small for a
+/// comparison, the reference diverges or the folder cannot be written.
 AccuracyFindings study_accuracy(const AccuracyPlan& plan, const ModelMaker& maker, const AccuracyProgress& progress);
 
 /// All rows with their figures; those on the Pareto front are marked.
 Table accuracy_table(const AccuracyFindings& findings);
-/// Error against cost: a line per knob, the Pareto front with named points, and the reference's own error.
+/// Error against cost: one line per knob, the Pareto front with named points, and the error of the reference itself.
 Plot accuracy_plot(const AccuracyFindings& findings, const std::string& title);
 /// The findings in words, and the table, as markdown.
 std::string accuracy_report(const AccuracyFindings& findings, const std::string& title);

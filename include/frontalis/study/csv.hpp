@@ -23,16 +23,16 @@ public:
 
   const std::vector<std::string>& header() const { return header_; }
 
-  /// Reads the next line that is not blank; false at the end of the file. Throws Error if the line does not have as
-  /// many fields as the header.
+  /// Reads the next line that is not blank. Returns false at the end of the file. Throws Error if the line does not
+  /// have as many fields as the header.
   bool next();
 
   const std::vector<std::string>& fields() const { return fields_; }
 
-  /// A field of the row as a finite number. Throws Error if it is none.
+  /// A field of the row as a finite number. Throws Error if the field is not such a number.
   double number(std::size_t column) const;
 
-  /// "FILE:LINE: " of the row, with which messages about it begin.
+  /// "FILE:LINE: " of the row, the beginning of messages about it.
   std::string place() const;
 
 private:

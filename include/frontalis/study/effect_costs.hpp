@@ -37,7 +37,8 @@ Model plain_model(const Model& model);
 EffectCosts measure_effects(const std::shared_ptr<const Model>& model, const SolverSettings& settings,
                             const StepTimer& timer);
 
-/// The cost of an effect that a fraction of the voxels has, or, for sliding and friction, of the nodes of one face.
+/// The cost of an effect that a fraction of the voxels has, or, for sliding and friction, a fraction of the nodes of
+/// one face.
 struct PresenceCost
 {
   Effect effect;

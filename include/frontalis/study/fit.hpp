@@ -49,7 +49,8 @@ struct FitSettings
   SolverSettings solver;
   std::string cache;  ///< folder that stores the influence of each model by the hash of its scene; empty: none
   int runs = 5;       ///< largest number of simulations that refine the answer; 0: no refinement
-  std::function<void(const std::string& stage, double done)> watch{};  ///< may throw, which ends the work
+  /// called with the stage and its completed fraction; may throw, which ends the work
+  std::function<void(const std::string& stage, double done)> watch{};
 };
 
 struct FittedUnknown
@@ -83,9 +84,10 @@ struct FitResult
 
 /// Finds values of the unknowns that bring landmarks closest to their targets in equilibrium; other muscles and bones
 /// stay at rest. The displacements that each unknown causes (its influence) are measured at two of its values, once per
-/// model. The sum of squared errors over their standard deviations is then minimised within the limits of the unknowns.
-/// Simulations correct the predicted displacements. Throws Error if the request does not fit the model, or if the face
-/// finds no equilibrium. Passes on what FitSettings::watch throws.
+/// model. The sum of squares of the errors divided by their standard deviations is then minimised within the limits of
+/// the unknowns, and simulations correct the predicted displacements.
+/// Throws Error if the request does not fit the model, or if the face finds no equilibrium. Passes on what
+/// FitSettings::watch throws.
 FitResult fit(const std::shared_ptr<const Model>& model, const FitRequest& request, const FitSettings& settings);
 
 Table unknowns_table(const FitResult& result);
@@ -111,7 +113,8 @@ struct RetargetResult
   std::vector<std::string> names;           ///< names of the unknowns
   std::vector<double> time;                 ///< [s]
   std::vector<std::vector<double>> values;  ///< value per time and unknown
-  std::vector<double> pass_errors;          ///< root mean square over landmarks and times after each simulation [m]
+  /// root mean square over landmarks and times, after each simulation of the track [m]
+  std::vector<double> pass_errors;
   struct Row
   {
     std::string landmark;
@@ -119,17 +122,18 @@ struct RetargetResult
     double mean = 0;     ///< root mean square of the error [m]
     double largest = 0;  ///< largest error [m]
   };
-  std::vector<Row> rows;  ///< errors of the best pass, per landmark of the track
+  std::vector<Row> rows;  ///< errors of the best simulation, per landmark of the track
 };
 
 /// Finds a track of activations or bones under which a simulated face follows a track of landmarks. Each time is fitted
 /// with the measured influence. Then `settings.runs` simulations of the whole track correct the values for inertia,
-/// delays of muscles and joint action of several muscles. Returns the best pass. Throws as fit() does.
+/// delays of muscles and the joint action of several muscles. Returns the simulation with the smallest error. Throws
+/// the errors of fit().
 RetargetResult retarget(const std::shared_ptr<const Model>& model, const LandmarkTrack& track,
                         const FitRequest& request, const FitSettings& settings);
 
 Table retarget_table(const RetargetResult& result);
-/// A table (CSV) for `frontalis run --activations`.
+/// Converts to a table (CSV) for `frontalis run --activations`.
 std::string activations_of(const RetargetResult& result);
 
 }  // namespace frontalis

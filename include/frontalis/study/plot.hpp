@@ -58,7 +58,7 @@ void write_plot(const Plot& plot, const std::string& path);
 /// Runs commands of gnuplot. Throws Error if it fails or is missing, and leaves the commands in PATH.gnuplot.
 void run_gnuplot(const std::string& commands, const std::string& path);
 
-/// File names without extension, and their plots.
+/// File names without extension, with their plots.
 using Plots = std::vector<std::pair<std::string, Plot>>;
 /// Writes plots to a folder. Returns markdown that shows them, for a file next to the folder.
 std::string write_plots(const Plots& plots, const std::string& folder);

@@ -9,11 +9,11 @@
 namespace frontalis
 {
 
-/// Draws skins of one model without a display, seen from far away, a little from the subject's left.
+/// Draws skins of one model without a display, as seen from far away and a little from the subject's left.
 class Portrait
 {
 public:
-  /// `rest`: the skin at rest, in the face frame, as all skins. The model must outlive this.
+  /// `rest`: the skin at rest. All skins are in the face frame. The model must outlive this object.
   Portrait(const Model& model, const SkinState& rest);
 
   static constexpr int width = 300, height = 380;  ///< [pixels]
@@ -25,7 +25,7 @@ private:
   PinholeCamera camera_;
 };
 
-/// Writes a sheet of portraits with a title each to PATH.png, by gnuplot.
+/// Writes a sheet of portraits, each with a title, to PATH.png by gnuplot.
 void write_contact_sheet(const std::vector<std::pair<std::string, std::vector<std::uint8_t>>>& portraits, int columns,
                          const std::string& path);
 

@@ -21,7 +21,7 @@ struct Trial
   std::int64_t voxels = 0;                                          ///< number of voxels of the case's largest model
   std::int64_t steps = 0;                                           ///< number of time steps of all motions
   double worst_jacobian = std::numeric_limits<double>::infinity();  ///< smallest J = det F
-  /// Largest imbalance and largest hourglass energy, both over the ledger's largest term; NaN: no ledger.
+  /// Largest imbalance and largest hourglass energy, both divided by the ledger's largest term; NaN: no ledger.
   double energy_error = std::numeric_limits<double>::quiet_NaN();
   double hourglass_share = std::numeric_limits<double>::quiet_NaN();
   std::int64_t rollbacks = 0;  ///< how often the guard returned to an earlier state
@@ -63,18 +63,18 @@ struct StabilityCase
   std::function<void(const StabilitySettings&, Trial&)> run;
 };
 
-/// All cases, in the order of the document; descriptions, sizes, times and bounds are read from FOLDER/NAME.yaml.
+/// All cases, in the order of the document. Descriptions, sizes, times and bounds are read from FOLDER/NAME.yaml.
 /// Throws Error if a file is missing or invalid.
 std::vector<StabilityCase> stability_cases(const std::string& folder);
 
-/// Runs a case. If it throws Error, the trial has its text as `failure`.
+/// Runs a case. An Error that the case throws becomes the `failure` of the trial.
 Trial run_case(const StabilityCase& hard_case, const StabilitySettings& settings);
 
-/// The heading of trial_line(), and one line per case.
+/// The heading of trial_line(), and the line of one case.
 std::string trial_heading();
 std::string trial_line(const StabilityCase& hard_case, const Trial& trial);
 
-/// Trials with their cases, as JSON, as a markdown table, and as FOLDER/stability.md with its plots in
+/// Write trials with their cases as JSON, as a markdown table, and as a document FOLDER/stability.md with plots in
 /// FOLDER/stability/. The document includes the text of FOLDER/stability/elsewhere.md. write_stability() throws Error
 /// if a file cannot be written or gnuplot is missing.
 using Trials = std::vector<std::pair<StabilityCase, Trial>>;

@@ -18,7 +18,7 @@ struct EquilibriumSettings
   RigidTransform bone_pose = {};  ///< pose of every bone at the end of the ramp
 };
 
-/// Model at rest under its loads.
+/// A model at rest under its loads.
 struct RestState
 {
   std::unique_ptr<Solver> solver;
@@ -33,9 +33,9 @@ RestState find_equilibrium(Model model, const EquilibriumSettings& settings);
 Point mean_displacement(const Vectors& displacements, const std::vector<std::int32_t>& nodes);
 Point internal_force(Solver& solver, const std::vector<std::int32_t>& nodes);
 
-/// Small displacements about a homogeneous deformation. The stiffness is the tangent of the solver's own internal
-/// forces, assembled and factorised directly, so that errors come from the elements alone and not from incomplete
-/// settling. Element matrices are central differences of the reference solver's forces.
+/// Statics of small displacements about a homogeneous deformation. The stiffness is the tangent of the solver's own
+/// internal forces, assembled and factorised directly, so that errors come from the elements alone and not from
+/// incomplete settling. Element matrices are central differences of the reference solver's forces.
 class LinearStatics
 {
 public:
@@ -44,7 +44,7 @@ public:
   explicit LinearStatics(const Model& model, const std::array<double, 9>& gradient = { { 1, 0, 0, 0, 1, 0, 0, 0, 1 } });
   ~LinearStatics();
 
-  /// Whether the state is stable: all pivots of the factorisation were positive.
+  /// Whether the state is stable, that is whether all pivots of the factorisation were positive.
   bool positive_definite() const;
 
   /// Displacements [m] under nodal forces [N] and the prescribed displacements. Throws Error in an unstable state.
@@ -55,7 +55,7 @@ private:
   std::unique_ptr<System> system_;
 };
 
-/// Forces [N] on the nodes of a plane of the grid (axis, index) that amount to a uniform traction [Pa] on it.
+/// Forces [N] on the nodes of a plane of the grid (axis, index) that are equivalent to a uniform traction [Pa].
 Vectors face_forces(const Model& model, int axis, std::int32_t index, const Point& traction);
 
 }  // namespace frontalis

@@ -18,10 +18,10 @@ struct TimedSolver
 using StepTimes = std::vector<std::vector<double>>;
 
 /// Times the solvers in turn (first, second, ..., first, second, ...) for about `seconds` of wall time in total and at
-/// least five turns, so that a disturbance of the machine affects all of them alike. Before this, each solver moves to
-/// its controls during 0.1 s of simulated time and then comes to rest for 0.1 s. A solver that needs more wall seconds
-/// for this than `patience` (0: `seconds`) keeps the controls that it has reached. `processor_time`: measure the
-/// processor time of this process, without other programs; correct only for solvers in the calling thread.
+/// least five turns, so that a disturbance of the machine affects all of them alike. Before that, each solver moves to
+/// its controls during 0.1 s of simulated time and comes to rest for another 0.1 s. A solver that needs more than
+/// `patience` wall seconds for this (0: `seconds`) keeps the controls that it has reached. `processor_time`: measure
+/// the processor time of this process, without other programs; correct only for solvers in the calling thread.
 StepTimes time_in_turn(const std::vector<TimedSolver>& solvers, double seconds, bool processor_time = false,
                        double patience = 0);
 
@@ -30,14 +30,14 @@ using StepTimer = std::function<StepTimes(const std::vector<TimedSolver>&)>;
 /// time_in_turn() with processor time if works_alone(settings), otherwise with wall time.
 StepTimer step_timer(const SolverSettings& settings, double seconds);
 
-/// Reading of a steady clock, and processor time that all threads of this process have used [s].
+/// Time of a steady clock, and processor time that all threads of this process have used [s].
 double wall_seconds();
 double processor_seconds();
 
-/// Whether a solver of these settings works in the calling thread alone.
+/// Whether a solver with these settings works in the calling thread alone.
 bool works_alone(const SolverSettings& settings);
 
-/// Median, and half of the interquartile range.
+/// A median and half of the interquartile range.
 struct Spread
 {
   double median = 0;
@@ -48,8 +48,8 @@ Spread spread_of(std::vector<double> values);
 Spread spread_of_difference(const StepTimes& times, std::size_t more, std::size_t less);
 Spread spread_of(const StepTimes& times, std::size_t column);
 
-/// Bytes per second that large copies read and write, all threads together; median of several copies. Characterises the
-/// machine when times of the solver are compared.
+/// Bytes per second that large copies read and write with all threads together; the median of several copies. This
+/// figure characterises the machine when times of the solver are compared.
 double copy_bandwidth(int threads);
 
 }  // namespace frontalis

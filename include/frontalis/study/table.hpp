@@ -10,14 +10,14 @@
 namespace frontalis
 {
 
-/// The results of a study as text, markdown, CSV or JSON. Numbers have six significant digits in text and markdown, and
-/// as many as restore them exactly in CSV and JSON. NaN is an empty cell (JSON: null).
+/// The results of a study as text, markdown, CSV or JSON. Numbers have six significant digits in text and markdown. In
+/// CSV and JSON they have as many as restore them exactly. NaN becomes an empty cell, or null in JSON.
 class Table
 {
 public:
   using Cell = std::variant<std::string, double>;
 
-  /// Names of the columns, with their units, if any: "force [N]".
+  /// Names of the columns, with a unit where there is one: "force [N]".
   explicit Table(std::vector<std::string> columns) : columns_(std::move(columns)) {}
 
   /// Throws Error if there are not as many cells as columns.
@@ -62,11 +62,12 @@ struct Checks : std::vector<Check>
   }
 };
 
-/// The heading of check_line(), and one line per check. `name`: name of the case.
+/// The heading of check_line(), and the line of one check. `name`: name of the case.
 std::string check_heading();
 std::string check_line(const std::string& name, const Check& check);
 
-/// Slope of log y against log x by least squares: the order of convergence of an error y in the voxel edge x.
+/// Slope of log y against log x by least squares. This is the order of convergence if y is an error and x the voxel
+/// edge.
 double slope(const std::vector<double>& x, const std::vector<double>& y);
 
 /// The zero of an increasing function between `low` and `high`, by bisection.

@@ -25,7 +25,7 @@ struct Finding
 struct VerificationCase
 {
   std::string name;
-  bool quick;  ///< takes at most some seconds and belongs to the short set
+  bool quick;  ///< whether the case takes at most some seconds and belongs to the short set
   /// `backend` computes the motions; figures of single elements come from the reference backend.
   std::function<void(const Backend& backend, Finding& finding)> run;
 };
@@ -33,7 +33,7 @@ struct VerificationCase
 /// Makes the model of a scene, as bake() does.
 using BakeScene = std::function<Model(const Scene&)>;
 
-/// All cases, in the order of the manual. Those that start from scenes are skipped without a `bake`.
+/// All cases, in the order of the manual. Without a `bake`, those that start from scenes are skipped.
 std::vector<VerificationCase> verification_cases(const BakeScene& bake = {});
 
 /// Findings, each with the name of its case.

@@ -33,14 +33,14 @@ struct VoxelBox
   std::function<int(const Voxel&)> material{};  ///< index of the voxel's material; not set: 0
 };
 
-/// The model of a box, and of a box of full cubic voxels of one material. Throws Error as build_nodes() does.
+/// The model of a box, and of a box of full cubic voxels of one material. Throws Error like build_nodes().
 Model voxel_model(const VoxelBox& box);
 Model voxel_model(const Voxel& size, double edge, const Material& material);
 /// A block of x * y * z equal neo-Hookean voxels (hypodermis, edge 1 mm), fixed at x = 0, with gravity along -z.
 Model dense_block(std::int32_t x, std::int32_t y, std::int32_t z);
 
-/// VoxelBox::fill of a shape: the fraction of samples^3 points that are inside, or 0 if it is below `fill_min`. The
-/// defaults are those of the bake.
+/// VoxelBox::fill of a shape: the fraction of samples^3 points that are inside, or 0 if that is below `fill_min`. The
+/// default values are those of the bake.
 std::function<double(const Voxel&)> sampled_fill(const Point& spacing, const Condition& inside, int samples = 4,
                                                  double fill_min = 0.2);
 /// Sets the mixture of each voxel: materials and their proportions.
@@ -67,13 +67,14 @@ Vectors affine_displacements(const Model& model, const std::array<double, 9>& gr
 std::vector<std::int32_t> nodes_where(const Model& model, const Condition& condition);
 /// Makes the nodes that fulfil a condition rigid: fixed, or moved by the named bone, which is added if it is new.
 void hold(Model& model, const Condition& condition, const std::string& bone = {});
-/// Prescribes components of the displacement [m] of nodes, which grow linearly during `ramp` [s].
+/// Prescribes components of the displacement [m] of nodes. The displacement grows linearly during `ramp` [s].
 void prescribe(Model& model, const std::vector<std::int32_t>& nodes, const std::array<bool, 3>& components,
                const Point& displacement = {}, double ramp = 0);
-/// Keeps the nodes of the planes x = 0, y = 0 and z = 0 in their planes: the model is an eighth of a symmetric body.
+/// Keeps the nodes of the planes x = 0, y = 0 and z = 0 in their planes, because the model is an eighth of a symmetric
+/// body.
 void hold_mirror_planes(Model& model);
 
-/// Triangulates point(s, t), s and t from 0 to 1, in rows x columns rectangles; leaves out triangles without area.
+/// Triangulates point(s, t), with s and t from 0 to 1, in rows x columns rectangles. Leaves out triangles without area.
 TriangleMesh grid_mesh(int rows, int columns, const std::function<Point(double s, double t)>& point);
 /// Binds each point to the voxel that contains it, or otherwise to the nearest one.
 Binding bind_points(const Model& model, const Vectors& points);

@@ -11,42 +11,43 @@ namespace frontalis
 
 struct WrinkleSettings
 {
-  /// Standard deviation of the window in which a quadratic surface is fitted to the skin; it is the skin without folds.
-  /// Of waves of 16 mm 0.4 % is lost, of 20 mm 4 %, of 30 mm a third [m].
+  /// Standard deviation [m] of the window in which a quadratic surface is fitted to the skin, which represents the skin
+  /// without folds. The fit removes 0.4 % of the height of waves of 16 mm, 4 % of 20 mm and a third of 30 mm.
   double window = 10e-3;
-  double least_depth = 0.15e-3;    ///< a furrow is at least this much lower than the ridges on both sides of it [m]
+  double least_depth = 0.15e-3;    ///< smallest depth of a furrow below the ridges on both sides of it [m]
   double least_length = 10e-3;     ///< shorter furrows are left out [m]
-  double section_distance = 2e-3;  ///< between two sections across the furrows [m]
-  /// Only furrows in this box at rest, in the skin's frame [m].
+  double section_distance = 2e-3;  ///< distance between two sections across the furrows [m]
+  /// Only furrows in this box at rest count; it is in the skin's frame [m].
   std::array<double, 3> lower{ { -1e9, -1e9, -1e9 } }, upper{ { 1e9, 1e9, 1e9 } };
 };
 
-/// A line in the skin.
+/// One furrow, a line in the skin.
 struct Furrow
 {
-  double depth = 0;                ///< mean over its sections of the height of the ridges beside it over its bottom [m]
-  double length = 0;               ///< [m]
-  std::array<double, 3> middle{};  ///< mean of its bottom [m]
+  double depth = 0;   ///< height of the ridges on both sides above the bottom, mean over the furrow's sections [m]
+  double length = 0;  ///< [m]
+  std::array<double, 3> middle{};  ///< mean position of its bottom [m]
 };
 
 struct Wrinkles
 {
   std::vector<Furrow> furrows;        ///< longest first
-  std::array<double, 3> direction{};  ///< unit vector along them; 0 if there are none
+  std::array<double, 3> direction{};  ///< unit vector along the furrows; 0 if there are none
   double depth = 0, deepest = 0;      ///< mean over all sections, and the largest [m]; 0 if there are none
-  double spacing = 0;  ///< median distance of neighbours along the skin [m]; 0 if no two are beside each other
-  double count = 0;    ///< mean number of furrows in a section that has at least one
+  /// median distance of neighbouring furrows along the skin [m]; 0 if no two are beside each other
+  double spacing = 0;
+  double count = 0;  ///< mean number of furrows in a section that has at least one
 };
 
 using SkinTriangles = std::vector<std::array<std::int32_t, 3>>;
 
-/// Height of each vertex above the skin without folds, along that skin's normal [m]. That skin is the quadratic surface
-/// which is fitted, by least squares with Gaussian weights of area, to the skin around the vertex.
+/// Height of each vertex above the skin without folds, along the normal of that skin [m]. The skin without folds is the
+/// quadratic surface that is fitted, by least squares with Gaussian weights of area, to the skin around the vertex.
 std::vector<double> fold_heights(const SkinState& skin, const SkinTriangles& triangles, double window);
 
-/// Measures the furrows that a skin has now and did not have at rest, as heights now less those at rest. Their
-/// direction is that in which heights change least. Sections across it are searched for furrows, which are joined to
-/// lines. Sections follow the skin without folds, so that a fold may overhang.
+/// Measures the furrows that a skin has now and did not have at rest, from present heights less those at rest. The
+/// direction of the furrows is that in which heights change least. Sections across this direction are searched for
+/// furrows, which are joined to lines. Sections follow the skin without folds, so that a fold may overhang.
 Wrinkles measure_wrinkles(const SkinState& rest, const SkinState& now, const SkinTriangles& triangles,
                           const WrinkleSettings& settings = {});
 

@@ -180,7 +180,7 @@ void BodyContact<Real>::find_force(std::size_t p, const Vector& x, const BodySta
   if (contact.friction > 0 && grip.normal > stiffness * physics::forgotten_depth)
     return;
   grip.normal = 0;
-  // a lower bound of the distance from the body
+  // The value divided by the steepest slope is a lower bound of the distance from the body.
   if (touches_[p] == Touching::no)
     due_[p] = body.way + (sampled ? value.value / physics::steepest_field
                                   : physics::distance_without_samples(field, contact.reach, x));
@@ -316,7 +316,7 @@ typename BodyContact<Real>::Energy BodyContact<Real>::energy_now(const Real* con
     energy.work += sum.work;
     energy.lost += sum.lost;
   }
-  // The sums end at the start of the latest step. Add what has come since, which the next step would add.
+  // The sums end at the start of the latest step. Here the rest is added, which the next step would add.
   const std::vector<RigidTransform> present = bodies(bones);
   std::vector<Reaction> now(fields_.size());
   for (std::size_t p = 0; p < points_.size(); ++p)

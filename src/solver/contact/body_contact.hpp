@@ -15,12 +15,12 @@
 namespace frontalis
 {
 
-/// Contact of bound surfaces with rigid bodies. In each step, before_step() finds the forces on points, which are
-/// divided among all threads. After a barrier, add_forces() adds those on the nodes of the thread's planes, and sums
-/// the reactions of points in voxels of these planes. after_step() records how far the nodes have moved. Points are
-/// sorted by voxel, so that each node's forces are added in the same order for any number of threads.
+/// Contact of bound surfaces with rigid bodies. In each step, before_step() finds the forces on points, which all
+/// threads share among each other. After a barrier, add_forces() adds the forces on the nodes of the thread's planes,
+/// and sums the reactions of points in voxels of these planes. after_step() records how far the nodes have moved.
+/// Points are sorted by voxel, so that each node's forces are added in the same order for any number of threads.
 ///
-/// A point at a distance from all bodies is not evaluated again before nodes and body together have moved that far.
+/// A point at some distance from all bodies is evaluated again only when nodes and body together have moved that far.
 template <class Real>
 class BodyContact : public NodePart<Real>
 {
@@ -41,7 +41,8 @@ public:
   std::vector<RigidTransform> bodies(const std::vector<RigidTransform>& bones) const override;
   std::int64_t lost_points() const override { return std::count(touches_.begin(), touches_.end(), Touching::lost); }
 
-  // For a backend that keeps the points in a memory of its own, finds their forces there, and has them summed here:
+  // The following types and functions serve a backend that keeps the points in a memory of its own and finds their
+  // forces there. follow() then sums these forces.
 
   using Vector = physics::Vec3<double>;
   struct Point
@@ -56,40 +57,39 @@ public:
     Vector force, arm;  ///< force on the point [N]; arm from the origin of the body's frame [m]
     double lost;        ///< dissipated by friction in this step [J]
   };
-  /// What a step has found for a point.
+  /// Result of a step for a point.
   struct Found
   {
     PointForce force;
     physics::Grip<double> grip;
     physics::Touching touching;
   };
-  /// Sorted by voxel.
   const std::vector<Point>& points() const { return points_; }
-  /// Largest ratio of a point's displacement to the largest one of the nodes of its voxel.
+  /// Largest ratio of a point's displacement to the largest displacement of a node of its voxel.
   double spread() const { return nodes_.spread(); }
-  /// Takes over what a step has found, one entry per point, and adds up the reactions and energies.
+  /// Takes the results of a step, one entry per point, and adds up the reactions and energies.
   void follow(const std::vector<Found>& found, const ConstraintStep& step);
 
 private:
   using Touching = physics::Touching;
   struct Energy
   {
-    double stored = 0;  // present [J]
+    double stored = 0;  // energy in the stiffness of contact at present [J]
     double work = 0;    // done by the motion of bodies [J]
     double lost = 0;    // dissipated by friction [J]
   };
-  // sums for one body in one plane of voxels
+  // Sums for one body in one plane of voxels.
   struct PlaneSum
   {
     Reaction reaction;
     double work, lost;
   };
-  // number of points that are skipped together
+  // Number of points that are skipped together.
   static constexpr std::int32_t chunk_size = 64;
   struct Chunk
   {
-    double due = 0;            // BodyState::way at which the first of its points must be evaluated
-    std::int64_t touches = 0;  // not 0: one of its points touches
+    double due = 0;            // value of BodyState::way at which the first of the chunk's points must be evaluated
+    std::int64_t touches = 0;  // not 0: a point of the chunk touches a body
   };
   /// Calls visit(p) for the points in [first, last) that touch.
   template <class Visit>
@@ -115,7 +115,7 @@ private:
         push(nodes[b], weight[b] * force);
   }
   Vector place(const Point& point, const Real* const u[3]) const;
-  /// Energies up to the present displacements.
+  /// Energies at the present displacements. Also adds the present forces [N] on nodes to `forces`, unless it is empty.
   Energy energy_now(const Real* const u[3], const std::vector<RigidTransform>& bones,
                     std::vector<std::array<double, 3>>& forces) const;
   std::vector<BodyState> next(const ConstraintStep& step) const;
@@ -131,24 +131,25 @@ private:
 
   const Model& model_;
   bool runs_ = true, any_pushed_ = false;
-  std::vector<Point> points_;               // sorted by voxel
-  std::vector<std::int32_t> plane_points_;  // first point in each plane of voxels; last two entries: their number
+  std::vector<Point> points_;  // sorted by voxel
+  // first point in each plane of voxels; the last two entries are the number of points
+  std::vector<std::int32_t> plane_points_;
   BoundNodeWay nodes_;
   std::vector<physics::DistanceField> fields_;
-  // values of the present step
+  // Values of the present step:
   std::vector<PointForce> forces_;  // one per point
   std::vector<BodyState> next_;
   std::vector<BodyMotion> motion_;  // motion of each body since the previous step
 
-  // state
+  // State of the motion:
   std::vector<physics::Grip<double>> grips_;  // one per point
-  std::vector<double> due_;                   // BodyState::way at which a point must be evaluated again
+  std::vector<double> due_;                   // value of BodyState::way at which a point must be evaluated again
   std::vector<Touching> touches_;
   std::vector<Chunk> chunks_;
   std::vector<BodyState> bodies_;  // at the start of the latest step
   std::vector<double> node_way_;  // longest displacement of a bound node in the latest step, one per plane of nodes [m]
   std::vector<PlaneSum> sums_;    // one per plane of voxels and body
-  std::vector<Energy> opened_;    // energies when the account was opened; one entry
+  std::vector<Energy> opened_;    // energies when the account was opened; the vector has one entry
 };
 
 }  // namespace frontalis

@@ -11,7 +11,7 @@ namespace
 
 using Vector = physics::Vec3<double>;
 
-// Assumed bound of how far tissue moves out of the box of its grid [m].
+// Assumed upper limit of how far tissue moves out of the box of its grid [m].
 constexpr double farthest_outside = 0.1;
 
 }  // namespace
@@ -42,7 +42,7 @@ double longest_way(const RigidTransform& from, const RigidTransform& to, const s
 BodyMotion motion_between(const RigidTransform& from, const RigidTransform& to)
 {
   BodyMotion motion{ vector(to.translation) - vector(from.translation), { 0, 0, 0 } };
-  // the vector of a small rotation is the skew part of to * from^T
+  // The vector of a small rotation is the skew part of to * from^T.
   double* const turn[3] = { &motion.turn.x, &motion.turn.y, &motion.turn.z };
   for (int axis = 0; axis < 3; ++axis)
     for (int k = 0; k < 3; ++k)

@@ -11,7 +11,7 @@ namespace frontalis
 namespace
 {
 
-// Runs of bound nodes are merged if at most this many other nodes are between them.
+// Two runs of bound nodes are merged if at most this many other nodes are between them.
 constexpr std::int32_t largest_gap = 8;
 
 // Factor on distances found in single precision that outweighs their rounding errors.
@@ -55,7 +55,7 @@ BoundNodeWay::BoundNodeWay(const Model& model, const Binding& points)
 template <class Real>
 double BoundNodeWay::in_plane(std::int32_t plane, const Real* const before[3], const Real* const after[3]) const
 {
-  // squared lengths, in lanes that the compiler can vectorise
+  // The largest squared lengths are kept in lanes, so that the compiler can vectorise the loop.
   constexpr std::int32_t width = 8;
   Real longest[width] = {};
   const auto compare = [&](std::int32_t lane, std::int32_t n)

@@ -9,7 +9,7 @@
 namespace frontalis
 {
 
-/// Finds how far the nodes of bound points move in a step.
+/// Finds how far the nodes to which points are bound move in a step.
 class BoundNodeWay
 {
 public:
@@ -19,19 +19,20 @@ public:
   /// Longest displacement [m] of a bound node of a plane in a step, from displacements before and after it.
   template <class Real>
   double in_plane(std::int32_t plane, const Real* const before[3], const Real* const after[3]) const;
-  /// Largest ratio of a point's displacement to the largest one of the nodes of its voxel.
+  /// Largest ratio of a point's displacement to the largest displacement of a node of its voxel.
   double spread() const { return spread_; }
   void list_arrays(ArrayList& list, Effect effect) const;
 
 private:
-  // nodes [first, last), of which nearly all are bound
+  // The nodes [first, last), nearly all of which are bound.
   struct Run
   {
     std::int32_t first, last;
   };
   double spread_ = 1;
-  std::vector<Run> runs_;                 // runs that contain all bound nodes, ascending
-  std::vector<std::int32_t> plane_runs_;  // first run in each plane of nodes; last two: number of runs
+  std::vector<Run> runs_;  // runs that contain all bound nodes, ascending
+  // first run in each plane of nodes; the last two entries are the number of runs
+  std::vector<std::int32_t> plane_runs_;
 };
 
 }  // namespace frontalis

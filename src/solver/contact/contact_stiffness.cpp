@@ -17,14 +17,15 @@ namespace frontalis
 namespace
 {
 
-// Where other nodes set the bound of the highest frequency, contact is stiffer than its law, up to `stiffest_factor`:
-// thin tissue on bone resists a finger several times as much as its Young's modulus says. Bounds of the nodes in
-// contact stay below `share_of_largest` of the largest.
+// Contact may be up to `stiffest_factor` times as stiff as its law says where this does not shorten the time step,
+// because thin tissue on bone resists a finger several times as much as its Young's modulus suggests. The squared
+// frequency bounds of the nodes in contact stay below `share_of_largest` of the model's largest bound.
 constexpr double stiffest_factor = 10;
 constexpr double share_of_largest = 0.95;
 
-// Limit of the stiffness of contact at a node, over that on a flat side of whole voxels with as much tissue. Points
-// that lie far outside of their voxel have large weights, and many points may be bound to a voxel with little tissue.
+// Upper limit of the stiffness of contact at a node, divided by the stiffness on a flat side of whole voxels with as
+// much tissue. The limit is needed because points far outside of their voxel have large weights, and because many
+// points may be bound to a voxel with little tissue.
 constexpr double stiffest_node = 2;
 
 double young_modulus(const VoxelProperties& voxel)
@@ -41,8 +42,8 @@ ContactStiffness::ContactStiffness(const Model& model, const Discretisation& dis
     : bodies_(model.contacts.size())
 {
   const double edge = *std::min_element(model.spacing.begin(), model.spacing.end());
-  // For each node, the bound of the stiffness of its voxels, and the stiffness of contact if the node were on a flat
-  // side of whole voxels: each of four voxels then contributes a quarter of an edge^2.
+  // For each node: the bound of the stiffness of its voxels, and the stiffness of contact if the node were on a flat
+  // side of whole voxels, where each of four voxels contributes a quarter of the area edge^2.
   std::vector<double> of_voxels(model.nodes.size(), 0), of_flat_side(model.nodes.size(), 0);
   std::vector<double> per_area(model.voxels.size());
   voxels_.resize(model.voxels.size());
@@ -75,7 +76,8 @@ ContactStiffness::ContactStiffness(const Model& model, const Discretisation& dis
   share_out(model, of_voxels);
 }
 
-// Distributes what contact adds to nodes to their voxels, whose own bounds voxels_ holds at first.
+// Distributes the stiffness that contact adds to nodes among their voxels. At first voxels_ holds the voxels' own
+// bounds.
 void ContactStiffness::share_out(const Model& model, const std::vector<double>& of_voxels)
 {
   share_rows(model, rows(model, false), of_voxels, voxels_);
@@ -92,7 +94,8 @@ void ContactStiffness::stiffen(const Model& model, const Discretisation& discret
 {
   if (bodies_ == 0)
     return;
-  // bounds of nodes with and without contact; 0 for held nodes
+  // `of_voxels`: bound of each node's stiffness without contact; `squared`: bound of its squared frequency with
+  // contact, 0 for held nodes.
   std::vector<double> of_voxels(model.nodes.size(), 0), squared(model.nodes.size(), 0);
   VoxelProperties properties;
   for (std::size_t e = 0; e < model.voxels.size(); ++e)
@@ -108,7 +111,8 @@ void ContactStiffness::stiffen(const Model& model, const Discretisation& discret
   }
   for (const auto node : discretisation.held)
     squared[node] = 0;
-  // A voxel's bound may grow as far as all nodes of it and of its neighbours allow; then no node's bound is too large.
+  // The bound of a voxel may grow by the smallest factor that all nodes of the voxel and of its neighbours allow. Then
+  // no node's bound is too large.
   const double limit = share_of_largest * discretisation.frequency_squared_max;
   std::vector<double> growth(model.nodes.size(), std::numeric_limits<double>::max());
   for (const auto& nodes : model.voxel_nodes)

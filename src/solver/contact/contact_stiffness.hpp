@@ -7,26 +7,27 @@ namespace frontalis
 
 class Discretisation;
 
-/// Stiffness of contact (physics/contact.hpp), and what it adds to the bound of the highest frequency. All points count
-/// as if they touched, so that the bound already holds when one begins to touch.
+/// Stiffness of contact (physics/contact.hpp), and its contribution to the bound of the highest frequency. All points
+/// count as if they touched, so that the bound holds already when a point begins to touch.
 class ContactStiffness : public AddedStiffness
 {
 public:
-  /// Finds it from the mixtures of the points' voxels. The discretisation's bounds must not include contact yet.
+  /// Computes the stiffness from the mixtures of the points' voxels. The discretisation's bounds must not include
+  /// contact yet.
   ContactStiffness(const Model& model, const Discretisation& discretisation);
 
-  /// Makes points of Model::contacts, not those of self-contact, up to ten times as stiff.
+  /// Makes points of Model::contacts up to ten times as stiff, but not those of self-contact.
   void stiffen(const Model& model, const Discretisation& discretisation) override;
 
   /// Stiffness [N/m] of a point of one of Model::contacts.
   double of(std::size_t contact, std::size_t point) const { return double(surfaces_[contact].points[point]); }
   /// Stiffness [N/m] of a vertex of one of Model::self_contacts.
   double of_self(std::size_t contact, std::size_t vertex) const { return of(bodies_ + contact, vertex); }
-  /// Contact's part of the bound of a voxel's stiffness [N/m]. In tissue of Poisson's ratio 0.49 it is at most 7 % of
-  /// the voxel's own.
+  /// Contact's part of the bound of a voxel's stiffness [N/m]. In tissue with a Poisson's ratio of 0.49 it is at most
+  /// 7 % of the voxel's own stiffness.
   double in_voxel(std::size_t voxel) const override { return double(voxels_[voxel]); }
-  /// Adds the internal forces [N] of points that all touch and stick, and are as stiff along the surface as along its
-  /// normal, at displacements [m].
+  /// Adds the internal forces [N] at displacements [m], with all points touching, sticking, and as stiff along the
+  /// surface as along its normal.
   void add_forces(const Model& model, const std::vector<std::array<double, 3>>& displacements,
                   std::vector<std::array<double, 3>>& forces) const override;
 
@@ -38,15 +39,16 @@ private:
   {
     const Binding* binding;
     std::vector<float> points;  // [N/m]
-    // How often the stiffness counts: 2 if the other side is tissue, because a spring between two masses acts on both.
+    // Factor with which the stiffness counts: 2 if the other side is tissue, because a spring between two masses acts
+    // on both.
     double moves;
   };
   void add(const Binding& binding, const std::vector<double>& area, const std::vector<double>& per_area, double moves);
   void share_out(const Model& model, const std::vector<double>& of_voxels);
-  /// `alone`: as if the other side stood still.
+  /// Sums of absolute stiffness per node (add_stiffness_rows()). `alone`: as if the other side stood still.
   std::vector<double> rows(const Model& model, bool alone) const;
 
-  std::vector<Surface> surfaces_;  // of Model::contacts, then of Model::self_contacts
+  std::vector<Surface> surfaces_;  // surfaces of Model::contacts, then those of Model::self_contacts
   std::size_t bodies_;
   std::vector<float> voxels_;  // [N/m]
   double longest_step_ = std::numeric_limits<double>::infinity();

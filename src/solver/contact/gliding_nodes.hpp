@@ -20,9 +20,10 @@ inline physics::Pose pose_of(const RigidTransform& from)
   return pose;
 }
 
-/// Sliding nodes whose surface moves with a bone, or all of a model with friction, processed one by one in double
-/// precision, in the frame of the bone. Their tangent planes are found in each step: if a plane were kept for several
-/// steps, its replacement would make the surface's reaction jump, which friction follows.
+/// Sliding nodes whose surface moves with a bone or, in a model with friction, all sliding nodes. They are processed
+/// one by one in double precision, in the frame of the bone. Their tangent planes are found anew in each step, because
+/// a plane that is kept for several steps makes the surface's reaction jump when it is replaced, and friction follows
+/// the reaction.
 template <class Real>
 class GlidingNodes
 {
@@ -38,10 +39,10 @@ public:
   };
   struct State
   {
-    Point normal{ 0, 0, 0 };  // of the plane normal . p = height; zero: no plane yet
+    Point normal{ 0, 0, 0 };  // normal of the plane normal . p = height; zero: the node has no plane yet
     double height = 0;
     double pressing = 0;  // reaction per mass with the delay of friction [m/s2]
-    // values of the latest step
+    // Values of the latest step:
     Point outward{ 0, 0, 0 };           // the normal in the scene's frame
     Point surface_velocity{ 0, 0, 0 };  // [m/s]
   };
@@ -50,7 +51,6 @@ public:
   /// Adds a node. Add nodes in ascending order.
   void add(const Node& node) { nodes_.push_back(node); }
   std::size_t size() const { return nodes_.size(); }
-  /// Switches friction on or off.
   void rub(bool on) { rubs_ = on; }
   void list_arrays(ArrayList& list) const { list.add(Effect::sliding, "nodes that glide", nodes_); }
   /// Moves the nodes in [first, last) back to their surfaces. See RestrictedNodes::constrain.

@@ -6,8 +6,8 @@
 namespace frontalis
 {
 
-/// Counts the sliding nodes that are past the rim of their surface's field, at displacements and poses of bones, and
-/// names one that is far past it (Monitor::past_rim, lost_node).
+/// Counts the sliding nodes past the rim of their surface's field (Monitor::past_rim) at given displacements and poses
+/// of bones, and names one that is far past the rim (Monitor::lost_node).
 void find_nodes_past_rim(const Model& model, const NodalVectors& displacements,
                          const std::vector<RigidTransform>& bones, Monitor& monitor);
 

@@ -15,14 +15,15 @@ namespace
 
 using Vector = physics::Vec3<double>;
 
-// In shortest voxel edges: how far from a triangle a vertex forms a pair with it, and up to which depth behind it.
+// A vertex and a triangle form a pair up to the first distance in front of the triangle and up to the second depth
+// behind it, both in shortest voxel edges.
 constexpr double reach_share = 0.5;
 constexpr double deepest_held = 1;
-// In shortest voxel edges: how far a vertex behind a triangle that it does not touch, because it is beyond the rim or
-// does not face it, moves until the pair is checked again.
+// A vertex may be behind a triangle without touching it, beyond its rim or because the two do not face each other. The
+// pair is checked again when the vertex has moved by this length, in shortest voxel edges.
 constexpr double patience = 0.02;
 
-// Share of the reach that vertices may move before the search is repeated.
+// Fraction of the reach by which vertices may move before the search is repeated.
 constexpr double renewal_share = 0.8;
 
 // The range of blocks that a thread processes.
@@ -126,7 +127,7 @@ void TissueContact<Real>::reset()
   const std::size_t count = surface_.vertices.size(), planes = static_cast<std::size_t>(model_.size[2]);
   if (count == 0)
     return;
-  // the pairs of a vertex are in one block, so that a block may leave a lane empty
+  // The pairs of a vertex must be in one block, so that a block may have unused lanes.
   const std::size_t blocks = (most_pairs * count) / (touch_width - 1) + 1;
   moved_.assign((6 + Moved::stride + (rubs_ ? 4 : 0)) * stride(), 0);
   live_.assign(vertex_blocks_.size(), 1);
@@ -247,14 +248,14 @@ void TissueContact<Real>::touch(Arena& arena, double way, double dt, std::int32_
                  first, last);
 }
 
-// Adds up the forces on vertices whose voxels have nodes in the share, in the order of the pairs.
+// Adds up the forces on those vertices whose voxels have nodes in the share, in the order of the pairs.
 template <class Real>
 void TissueContact<Real>::add_up(const Arena& arena, const NodeShare& share, std::vector<Real>& sums,
                                  std::vector<std::uint8_t>& summed, std::vector<double>& lost) const
 {
   const auto begin = static_cast<std::uint32_t>(plane_points_[std::max(share.first_plane - 1, 0)]);
   const auto count = static_cast<std::uint32_t>(plane_points_[share.end_plane]) - begin;
-  // all numbers of a record are read first, so that compilers can load them together
+  // All numbers of a record are read before any is written, so that compilers can load them together.
   const auto add = [](Real sign, const Real* from, Real* to)
   {
     const Real record[4] = { to[0] + sign * from[0], to[1] + sign * from[1], to[2] + sign * from[2],
@@ -295,7 +296,7 @@ void TissueContact<Real>::add_up(const Arena& arena, const NodeShare& share, std
     }
 }
 
-// Calls sink(node, force) for nodes of the share on which the forces of add_up() act.
+// Passes the sums of add_up() on to nodes: calls sink(node, force) for the nodes of the share on which they act.
 template <class Real>
 template <class Sink>
 void TissueContact<Real>::push(const NodeShare& share, const Moved& moved, std::vector<Real>& sums,
@@ -353,7 +354,7 @@ void TissueContact<Real>::add_energies(const Real* const u[3], const std::vector
   if (idle())
     return;
   double lost = std::accumulate(lost_.begin(), lost_.end(), 0.0), stored = 0;
-  // The sums end at the start of the latest step. The rest is what the next step would add.
+  // The sums end at the start of the latest step. Here the rest is added, which the next step would add.
   std::vector<Real> components = moved_;
   std::vector<PairVertices> pair_vertices = pair_vertices_;
   std::vector<PairBlock<Real>> pairs = pairs_;

@@ -14,17 +14,19 @@ namespace frontalis
 {
 
 /// Contact of the tissue's surfaces with each other and with themselves. Each vertex of a surface is pushed out of the
-/// triangles of others, and the corners of the triangle in the opposite direction (physics/surface_touch.hpp). Each
-/// side has half of the stiffness, because both are pushed out of the other.
+/// triangles of other surfaces, and the corners of such a triangle are pushed in the opposite direction
+/// (physics/surface_touch.hpp). Each side has half of the stiffness, because the vertices of both are pushed out of the
+/// other.
 ///
-/// A vertex forms pairs with at most `most_pairs` triangles that face it and follows the surface from one triangle to
-/// the next. Pairs are found with a grid, in three steps: the first sorts all triangles into cells, the second searches
+/// A vertex forms pairs with at most `most_pairs` triangles that face it, and follows the surface from one triangle to
+/// the next. A grid finds the pairs within three steps: the first sorts all triangles into cells, the second searches
 /// near each vertex, the third puts the pairs into blocks. The search is repeated when nodes have moved so far that a
-/// vertex and a triangle out of its reach could touch. Until then, a block whose pairs are `d` apart is skipped until
-/// vertices have moved by that much, and vertices far from all pairs are not placed.
+/// vertex could touch a triangle outside of its reach. A block whose pairs have gaps of at least `d` is skipped until
+/// vertices have moved by `d`, and the positions of vertices far from all pairs are not computed.
 ///
-/// In prepare_step() the threads place the vertices. In before_step() each finds the forces of its part of the pairs,
-/// and in add_forces() it adds those on nodes of its planes in the order of the pairs.
+/// In prepare_step() the threads compute the positions of the vertices. In before_step() each thread finds the forces
+/// of its part of the pairs, and in add_forces() it adds the forces on the nodes of its planes in the order of the
+/// pairs.
 template <class Real>
 class TissueContact : public NodePart<Real>
 {
@@ -53,32 +55,32 @@ private:
 
   enum class Stage : std::int32_t
   {
-    sort,     // sort triangles, in the next step
-    search,   // search among them, in the step after that
-    collect,  // collect the pairs that were found, at the start of the step after that
+    sort,     // sort triangles in the next step
+    search,   // search among the triangles in the step after `sort`
+    collect,  // collect the pairs that were found at the start of the step after `search`
     hold
   };
   struct Clock
   {
-    double way = 0;       // bound of how much closer a vertex and a triangle can have come to each other [m]
+    double way = 0;       // upper bound of the distance by which a vertex and a triangle have approached each other [m]
     double earliest = 0;  // smallest due_ of all blocks
-    double renewal = 0;   // way at which the search is repeated
-    double dt = 0;        // length of the latest step [s]; 0: there was none
+    double renewal = 0;   // value of `way` at which the search is repeated
+    double dt = 0;        // length of the latest step [s]; 0: no step has been made
     Stage stage = Stage::sort;
     std::int32_t blocks = 0;  // number of blocks of pairs
   };
   struct Found
   {
-    std::array<std::int32_t, most_pairs> triangle{ { -1, -1 } };  // -1: none
-    std::array<double, most_pairs> away{};                        // [m]
+    std::array<std::int32_t, most_pairs> triangle{ { -1, -1 } };  // -1: no triangle
+    std::array<double, most_pairs> away{};                        // distance from each triangle [m]
   };
-  // A pair and its state of friction.
+  // A pair of a vertex and a triangle, with its state of friction.
   struct Pair
   {
     std::int32_t vertex, triangle;
     Real held, pressed, along, stretch[3];
   };
-  // Arrays that touch() reads and changes.
+  // The arrays that touch() reads and changes.
   struct Arena
   {
     std::vector<PairVertices>& pair_vertices;
@@ -124,15 +126,17 @@ private:
   TouchKernels<Real> kernels_;
   TouchingSurface surface_;
   bool runs_ = true, rubs_ = false;
-  double reach_;                  // how far from a triangle a vertex finds it [m]
+  double reach_;                  // distance from a triangle within which a vertex forms a pair with it [m]
   std::vector<float> stiffness_;  // of each vertex [N/m]
-  std::vector<float> per_area_;   // the same over its area [N/m3]
-  std::vector<float> overlap_;    // of each vertex: gap at rest, where its depth is 0; not positive [m]
+  std::vector<float> per_area_;   // stiffness_ divided by the area of each vertex [N/m3]
+  // gap of each vertex at rest, not positive; the depth of contact is measured from it [m]
+  std::vector<float> overlap_;
   std::vector<VertexBlock<Real>> vertex_blocks_;
-  std::vector<std::int32_t> bound_nodes_;   // ascending
-  std::vector<std::int32_t> plane_points_;  // first vertex in each plane of voxels; last two entries: their number
+  std::vector<std::int32_t> bound_nodes_;  // ascending
+  // first vertex in each plane of voxels; the last two entries are the number of vertices
+  std::vector<std::int32_t> plane_points_;
   BoundNodeWay nodes_;
-  // of the step under way
+  // Values of the present step:
   std::vector<PairForceBlock<Real>> forces_;
   std::vector<std::uint32_t> touches_;             // PairArguments::touches
   std::vector<std::vector<Real>> sums_;            // forces on vertices and on their normals, one list per thread
@@ -140,17 +144,17 @@ private:
   std::vector<Real> node_forces_;                  // on bound nodes, four numbers each [N]
   Clock next_;
 
-  // state
-  std::vector<Real> moved_;         // MovedVertices, at the start of the latest step in which they were needed
-  std::vector<std::uint8_t> live_;  // whether a block of vertices is near one that it may touch
+  // State of the motion:
+  std::vector<Real> moved_;         // MovedVertices at the start of the latest step in which they were needed
+  std::vector<std::uint8_t> live_;  // whether a block has a vertex close to a triangle that it may touch
   std::vector<PairVertices> pair_vertices_;
   std::vector<PairBlock<Real>> pairs_;
-  std::vector<double> due_;  // Clock::way at which a block of pairs is evaluated again
+  std::vector<double> due_;  // value of Clock::way at which a block of pairs is evaluated again
   std::vector<Found> found_;
-  std::vector<Clock> clock_;      // one entry
-  std::vector<double> node_way_;  // longest way of a bound node in the latest step, one per plane of nodes [m]
-  std::vector<double> lost_;      // to friction, one per plane of voxels [J]
-  std::vector<double> opened_;    // sum of lost_ when the account was opened; one entry
+  std::vector<Clock> clock_;      // the vector has one entry
+  std::vector<double> node_way_;  // longest displacement of a bound node in the latest step, one per plane of nodes [m]
+  std::vector<double> lost_;      // energy lost to friction, one per plane of voxels [J]
+  std::vector<double> opened_;    // sum of lost_ when the account was opened; the vector has one entry
   TriangleGrid grid_;
 };
 

@@ -1,4 +1,4 @@
-// Which triangles a vertex may touch.
+// Finds the triangles that a vertex may touch.
 
 #include "solver/contact/tissue_contact.hpp"
 
@@ -12,21 +12,20 @@ namespace
 
 using Vector = physics::Vec3<double>;
 
-// Depth behind a triangle up to which the search finds a vertex, in shortest voxel edges: more than a vertex moves
+// Depth behind a triangle up to which the search finds a vertex, in shortest voxel edges. A vertex moves less than that
 // between two searches.
 constexpr double deepest_found = 0.5;
 
-// Tolerance in barycentric coordinates, above the error of a foot, so that no foot falls between two triangles.
+// Tolerance in barycentric coordinates. It is above the error of a foot, so that no foot falls between two triangles.
 constexpr double foot_error = 0.02;
 
-// If the cosine between the normals of a vertex and of a triangle's corner is greater than this, the two surely do not
-// face each other.
+// A vertex and a triangle do not face each other if the cosine between their normals exceeds this value.
 constexpr double same_way = 0.5;
 
-// Most triangles that a vertex crosses in a step.
+// Largest number of triangles that a vertex crosses in a step.
 constexpr int most_hops = 16;
 
-// Rings of triangles around that of a pair whose corners are placed in each step.
+// Number of rings of triangles around that of a pair whose corners have positions in each step.
 constexpr int rings = 3;
 
 // Factor on the reach that allows for motion between the sorting of triangles and the search.
@@ -66,7 +65,8 @@ physics::SurfaceTriangle<double> TissueContact<Real>::triangle(std::int32_t t, c
   return out;
 }
 
-// Moves t to the surface's triangle under x, from one near it. Does not enter triangles whose corners are not placed.
+// Changes t, a triangle near the point x, to the triangle of the surface under x. Does not enter triangles whose
+// corners have no present positions.
 template <class Real>
 typename TissueContact<Real>::Foot TissueContact<Real>::follow(std::int32_t& t, const Vector& x,
                                                                const Moved& moved) const
@@ -95,8 +95,8 @@ typename TissueContact<Real>::Foot TissueContact<Real>::follow(std::int32_t& t, 
   return foot;
 }
 
-// Called by the kernel. The pairs of a vertex are neighbours in a block; if both reach the same triangle, the second
-// ends.
+// The kernel calls this function for a pair whose foot is beyond its triangle. The pairs of a vertex are neighbours in
+// a block; if two of them reach the same triangle, the second pair is removed.
 template <class Real>
 void TissueContact<Real>::go_on(void* arena, std::int32_t block, int lane)
 {
@@ -173,7 +173,7 @@ void TissueContact<Real>::sort_triangles()
   grid_.build(margin * (reach_ + std::sqrt(largest)), centres);
 }
 
-// Whether a vertex has a triangle of a facing surface in front of it within the reach, or just behind.
+// Whether a triangle of a facing surface is in front of a vertex within the reach, or just behind it.
 template <class Real>
 bool TissueContact<Real>::meets(std::size_t p, std::int32_t t, const Moved& moved, double& gap) const
 {
@@ -196,7 +196,7 @@ bool TissueContact<Real>::meets(std::size_t p, std::int32_t t, const Moved& move
   return !surface_.inseparable(p, t);
 }
 
-// Whether triangles have a corner in common.
+// Whether two triangles have a corner in common.
 template <class Real>
 bool TissueContact<Real>::adjoin(std::int32_t t, std::int32_t s) const
 {
@@ -204,7 +204,7 @@ bool TissueContact<Real>::adjoin(std::int32_t t, std::int32_t s) const
   return std::any_of(a.begin(), a.end(), [&](auto v) { return std::find(b.begin(), b.end(), v) != b.end(); });
 }
 
-// The nearest triangles that a vertex may touch, one of each surface there.
+// The nearest triangles that a vertex may touch, one on each surface near it.
 template <class Real>
 typename TissueContact<Real>::Found TissueContact<Real>::search(std::size_t p)
 {
@@ -217,7 +217,8 @@ typename TissueContact<Real>::Found TissueContact<Real>::search(std::size_t p)
                double gap;
                if (!meets(p, t, moved, gap))
                  return;
-               // if t is nearer, it replaces the found triangle that adjoins it, else the farthest one found
+               // If t is nearer, it replaces the found triangle that shares a corner with it, else the farthest one
+               // found.
                std::size_t k = found.away[0] > found.away[1] ? 0 : 1;
                for (std::size_t same = 0; same < most_pairs; ++same)
                  if (found.triangle[same] >= 0 && adjoin(t, found.triangle[same]))
@@ -230,7 +231,7 @@ typename TissueContact<Real>::Found TissueContact<Real>::search(std::size_t p)
   return found;
 }
 
-// Forms blocks of the pairs that touch, and of those that the search has found.
+// Forms blocks of the pairs that touch and of the pairs that the search has found.
 template <class Real>
 void TissueContact<Real>::collect_pairs()
 {
@@ -263,7 +264,7 @@ void TissueContact<Real>::collect_pairs()
       continue;
     if (lanes + of_vertex.size() > touch_width)
     {
-      // lanes that stay empty are copies of this pair without stiffness
+      // Unused lanes are copies of this pair without stiffness.
       for (int l = 0; l < touch_width; ++l)
       {
         set_lane(pair_vertices_[blocks], pairs_[blocks], l, { p, of_vertex[0].triangle, 0, 0, 0, {} });
@@ -301,7 +302,7 @@ void TissueContact<Real>::mark_live()
       }
 }
 
-// Surfaces that meet at rest, such as closed lips, may overlap by the error of their triangulation.
+// Finds how far surfaces that meet at rest, such as closed lips, overlap because of errors of their triangulation.
 template <class Real>
 void TissueContact<Real>::find_overlap_at_rest()
 {

@@ -15,21 +15,23 @@ namespace
 
 using Vector = TouchingSurface::Vector;
 
-// Lengths in voxel edges. Parts of a surface within joined_within along it never touch. Points at most overlap_at_rest
-// behind a triangle at rest may touch it; those deeper, up to thickest_sheet, are the other side of its sheet.
+// Lengths in voxel edges. Parts of a surface whose distance along the surface is below `joined_within` never touch. A
+// point that is behind a triangle at rest may touch it if its depth is at most `overlap_at_rest`; at larger depths, up
+// to `thickest_sheet`, it belongs to the other side of the same sheet of tissue.
 constexpr double joined_within = 2;
 constexpr double overlap_at_rest = 0.25;
 constexpr double thickest_sheet = 3;
 
-// Cosine of the angle from a triangle's inward normal within which the other side of its sheet lies.
+// The other side of a sheet lies within an angle with this cosine from a triangle's inward normal.
 constexpr double across_sheet = 0.5;
 
-// If the cosine of the angle between two triangles is below this, their edge is a crease, with two normals.
+// If the cosine of the angle between two triangles is below this value, their common edge is a crease, where vertices
+// have two normals.
 constexpr double crease = 0.5;
 
 struct Facet
 {
-  Vector area;    // normal, its length the triangle's area [m2]
+  Vector area;    // normal whose length is the triangle's area [m2]
   Vector normal;  // unit vector
 };
 
@@ -46,10 +48,10 @@ std::vector<Facet> facets_of(const TriangleMesh& mesh)
 }
 
 // For each corner of each triangle, the neighbour across the opposite edge; -1 if the edge does not belong to exactly
-// two triangles, if their orientations disagree or if the edge is a crease.
+// two triangles, if their orientations disagree, or if the edge is a crease.
 std::vector<std::array<std::int32_t, 3>> smooth_neighbours(const TriangleMesh& mesh, const std::vector<Facet>& facets)
 {
-  using Side = std::pair<std::int32_t, std::size_t>;  // triangle and corner
+  using Side = std::pair<std::int32_t, std::size_t>;  // a triangle and one of its corners
   std::map<std::pair<std::int32_t, std::int32_t>, std::vector<Side>> edges;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     for (std::size_t i = 0; i < 3; ++i)
@@ -117,7 +119,7 @@ void TouchingSurface::add(std::int32_t contact, std::int32_t first_source)
     {
       if (triangles[first_triangle + t].vertex[i] >= 0)
         continue;
-      // the triangles around this corner that meet smoothly share a vertex
+      // The triangles around this corner that join without a crease share one vertex.
       const std::int32_t source = mesh.triangles[t][i];
       Vector normal{ 0, 0, 0 };
       double area = 0;
@@ -151,7 +153,7 @@ void TouchingSurface::add(std::int32_t contact, std::int32_t first_source)
   join(mesh, first_source, joined_within * *std::max_element(model_.spacing.begin(), model_.spacing.end()));
 }
 
-// The shortest paths along edges from each vertex, up to `within` [m].
+// Finds the shortest paths along edges from each vertex, up to the length `within` [m].
 void TouchingSurface::join(const TriangleMesh& mesh, std::int32_t first_source, double within)
 {
   std::vector<std::vector<std::int32_t>> around(mesh.vertices.size());

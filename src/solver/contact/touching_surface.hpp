@@ -10,8 +10,9 @@
 namespace frontalis
 {
 
-/// The surfaces of a model that touch each other, made ready for contact: vertices sorted by voxel, one for each smooth
-/// part of the surface at a crease, neighbours of triangles, and which of them are joined at rest.
+/// The surfaces of a model that touch each other, in the form that contact needs. Vertices are sorted by voxel; a point
+/// on a crease has one vertex for each smooth part of the surface. Also lists neighbours of triangles and parts that
+/// are joined at rest.
 class TouchingSurface
 {
 public:
@@ -20,13 +21,13 @@ public:
   {
     std::int32_t voxel;
     std::int32_t contact;              // index into Model::self_contacts
-    std::int32_t source_in_contact;    // its vertex of the contact's surface
-    std::int32_t source;               // the same, counted over all contacts
+    std::int32_t source_in_contact;    // index of the vertex in that contact's surface
+    std::int32_t source;               // the same index, counted over all contacts
     std::array<float, 3> coordinates;  // in the voxel
-    float area_share;                  // share of its source's area
+    float area_share;                  // fraction of the area of its source
     Vector rest;
     Vector normal;                  // at rest, unit vector
-    std::array<Vector, 2> tangent;  // their cross product is the normal
+    std::array<Vector, 2> tangent;  // two vectors whose cross product is the normal
   };
   struct Triangle
   {
@@ -36,11 +37,11 @@ public:
   };
   explicit TouchingSurface(const Model& model);
 
-  /// Whether a vertex and a triangle never touch: their distance along the surface is below `joined_within`, or they
-  /// are two sides of one sheet of tissue.
+  /// Whether a vertex and a triangle never touch, because their distance along the surface is below `joined_within`, or
+  /// because they are on the two sides of one sheet of tissue.
   bool inseparable(std::size_t v, std::int32_t t) const;
 
-  Binding binding() const;  ///< of the vertices
+  Binding binding() const;  ///< binding of the vertices
   void list_arrays(ArrayList& list, Effect effect) const;
 
   std::vector<Vertex> vertices;
@@ -53,7 +54,7 @@ private:
   void sort_vertices();
 
   const Model& model_;
-  std::vector<std::int32_t> joined_begin_, joined_;  // sources near each source along the surface, ascending
+  std::vector<std::int32_t> joined_begin_, joined_;  // sources near each source along the surface, in ascending order
 };
 
 }  // namespace frontalis

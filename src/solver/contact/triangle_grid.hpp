@@ -11,7 +11,8 @@
 namespace frontalis
 {
 
-/// A uniform grid of points whose cells are hashed into a table, so that memory does not depend on how far they spread.
+/// A uniform grid of points. Its cells are hashed into a table, so that memory does not grow with the extent of the
+/// points.
 class TriangleGrid
 {
 public:
@@ -22,7 +23,8 @@ public:
   /// Sorts points into cells of edge `reach` [m].
   void build(double reach, const std::vector<Vector>& points);
   double reach() const { return edge_[0]; }
-  /// Calls visit(index) for all points within the reach of p, and for some farther ones; for some twice.
+  /// Calls visit(index) for all points within the reach of p, and also for some farther points; may visit a point
+  /// twice.
   template <class Visit>
   void near(const Vector& p, const Visit& visit) const
   {
@@ -40,12 +42,13 @@ public:
 private:
   std::array<std::int64_t, 3> cell(const Vector& p) const
   {
-    // coordinates that are not finite are in cell 0
+    // Coordinates that are not finite count as cell 0.
     const auto index = [&](double x)
     { return std::abs(x) < 1e9 * edge_[0] ? static_cast<std::int64_t>(std::floor(x / edge_[0])) : std::int64_t(0); };
     return { { index(p.x), index(p.y), index(p.z) } };
   }
-  // primes of Teschner et al., Optimized spatial hashing for collision detection of deformable objects, VMV 2003
+  // The factors are primes of Teschner et al., Optimized spatial hashing for collision detection of deformable objects,
+  // VMV 2003.
   std::size_t hash(std::int64_t x, std::int64_t y, std::int64_t z) const
   {
     const auto mixed = static_cast<std::uint64_t>(x) * 73856093u ^ static_cast<std::uint64_t>(y) * 19349663u ^
@@ -53,8 +56,8 @@ private:
     return static_cast<std::size_t>(mixed & (begin_.size() - 2));
   }
 
-  std::vector<double> edge_ = std::vector<double>(1, 1.0);  // one entry [m]
-  std::vector<std::int32_t> begin_;                         // of each bucket; their number is a power of 2
+  std::vector<double> edge_ = std::vector<double>(1, 1.0);  // edge of a cell [m]; the vector has one entry
+  std::vector<std::int32_t> begin_;  // start of each bucket; the number of buckets is a power of 2
   std::vector<std::int32_t> entries_;
 };
 

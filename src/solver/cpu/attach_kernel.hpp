@@ -5,23 +5,23 @@
 namespace frontalis
 {
 
-/// Number of masters of attached nodes that are processed together, one per lane. Where fewer are left, the other lanes
+/// Number of masters of attached nodes that are processed together, one per lane. If fewer are left, the other lanes
 /// are copies of the first one.
 constexpr int attach_width = 16;
 
-/// Levels of one node per lane, to first order: at displacement u the level is gradient . u + level [m].
+/// Level sets of one node per lane, linearised: at displacement u a node has the level gradient . u + level [m].
 template <class Real>
 struct LevelPlanes
 {
   Real gradient[3][attach_width], level[attach_width];
-  Real flat[attach_width];             ///< 1 / |gradient|^2; 0: no plane
+  Real flat[attach_width];             ///< 1 / |gradient|^2; 0: the lane has no plane
   Real reference[3][attach_width];     ///< displacement at which the plane was found
-  Real slip_squared[attach_width];     ///< squared distance over which it is valid; negative: no plane yet
+  Real slip_squared[attach_width];     ///< squared distance over which the plane is valid; negative: no plane yet
   std::int32_t surface[attach_width];  ///< index into Model::constraint_surfaces; -1: none
 };
 
-/// Held nodes that follow the masters of the lanes, one per lane. A lane without one has a copy of another node, with
-/// weight 0.
+/// Held nodes that follow the masters of the lanes, one per lane. A lane whose master has no such node contains a copy
+/// of another node, with weight 0.
 template <class Real>
 struct HeldRow
 {
@@ -30,7 +30,8 @@ struct HeldRow
   Real weight[attach_width];  ///< mass times ratio
 };
 
-/// Sliding nodes that follow the masters of the lanes, likewise.
+/// Sliding nodes that follow the masters of the lanes, one per lane. Lanes without such a node are filled as in
+/// HeldRow.
 template <class Real>
 struct LevelRow
 {
@@ -38,7 +39,7 @@ struct LevelRow
   Real ratio[attach_width], weight[attach_width];
   Real offset[attach_width];  ///< level_offset() [m]
   LevelPlanes<Real> planes;
-  Real u[3][attach_width], v[3][attach_width];  ///< before the constraints
+  Real u[3][attach_width], v[3][attach_width];  ///< displacement and velocity before the constraints
 };
 
 template <class Real>
@@ -52,7 +53,7 @@ struct MasterBlock
   LevelPlanes<Real> planes;
 };
 
-/// Plain pointers, for the reason given at CpuKernelArguments.
+/// Arguments of the kernel: plain pointers, for the reason given at CpuKernelArguments.
 template <class Real>
 struct AttachArguments
 {
@@ -72,7 +73,7 @@ struct AttachArguments
 template <class Real>
 using AttachKernel = void (*)(const AttachArguments<Real>& arguments, std::int32_t first, std::int32_t last);
 
-/// The kernel for any machine, in any precision.
+/// The kernel without SIMD, for any machine and in any precision.
 template <class Real>
 void attach_plainly(const AttachArguments<Real>& arguments, std::int32_t first, std::int32_t last);
 

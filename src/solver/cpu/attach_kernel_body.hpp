@@ -5,8 +5,8 @@
 namespace frontalis
 {
 
-/// Loops over the lanes of a block, which the compiler vectorises. The architecture is part of every type, so that
-/// instruction sets share no template instantiation.
+/// Loops over the lanes of a block, which the compiler vectorises. The architecture is part of every type, so that code
+/// for different instruction sets shares no template instantiation.
 template <class Architecture, class Real>
 struct AttachKernelBody
 {
@@ -98,7 +98,7 @@ struct AttachKernelBody
     along(row.planes, row.u, level);
     for (int l = 0; l < width; ++l)
     {
-      // an error is removed as for other sliding nodes (physics/sliding.hpp)
+      // An error of the level is removed gradually, as for other sliding nodes (physics/sliding.hpp).
       const Real change = row.ratio[l] * master_speed[l] - speed[l];
       const Real apart =
           level[l] + row.planes.level[l] + g.dt * change - row.ratio[l] * master_level[l] - row.offset[l];
@@ -118,9 +118,10 @@ struct AttachKernelBody
     scatter(row.node, velocity, g.v);
   }
 
-  // With m the masses of a master and of the nodes that it holds, H their momentum less m times the master's velocity,
-  // and q and a the sums of momentum and inertia of the nodes that slide with it, the velocity that is nearest in the
-  // norm of masses solves (m + a g g^T) change = H + (q - a g . v) g, with g the gradient of the master's level.
+  // Finds the velocities that satisfy the constraints and are nearest to the unconstrained ones in the norm of masses.
+  // Let m be the mass of a master and of the nodes that it holds, H the momentum of these nodes less m times the
+  // master's velocity v, a and q the inertia and momentum of the nodes that slide with the master, and g the gradient
+  // of its level. Then v changes by the solution of (m + a g g^T) change = H + (q - a g . v) g.
   static void process(const Arguments& g, MasterBlock<Real>& b)
   {
     Planes& planes = b.planes;

@@ -10,7 +10,7 @@
 namespace frontalis
 {
 
-/// What gives a voxel stiffness against hourglass modes.
+/// Kind of a voxel's resistance to hourglass modes.
 enum class Stabilisation
 {
   scalar,
@@ -19,7 +19,7 @@ enum class Stabilisation
 };
 
 /// Forces of the voxels of a tile, one SIMD batch at a time. The mechanics are in physics/element/; this class provides
-/// the data of a batch. The architecture is a template parameter, so that translation units of different instruction
+/// the data of a batch. The architecture is a template parameter, so that translation units for different instruction
 /// sets share no instantiation.
 template <class Architecture, class Real>
 struct CpuElement
@@ -43,7 +43,7 @@ struct CpuElement
     const Tile* tile;
     std::int32_t index;  ///< of the tile
     int offset;          ///< first lane
-    bool owned;          ///< false in the plane below a slab, computed here only for its upper nodes
+    bool owned;          ///< false in the plane below a slab, which is computed here only for its upper nodes
     bool with_bound;     ///< whether stiffness bounds are computed
     double* work;        ///< sum of the work of fibres [J]; null without a ledger
 
@@ -126,7 +126,7 @@ struct CpuElement
       if (g.fibre_memory != nullptr && owned)
         add_fibre_work(k);
     }
-    // Adds the work of the fibres since the last call.
+    // Adds the work that the fibres have done since the previous call.
     __attribute__((noinline)) void add_fibre_work(const Kinematics& k) const
     {
       for (auto s = tile->fibre_begin; s < tile->fibre_end; ++s)
@@ -182,13 +182,13 @@ struct CpuElement
     }
   };
 
-  /// Voxels with a stabilisation known at compile time.
+  /// Voxels whose kind of hourglass control is known at compile time.
   template <Stabilisation Form>
   struct VoxelsOf : Voxels
   {
     static constexpr bool assumed_strain() { return Form == Stabilisation::assumed_strain; }
     static constexpr bool selective_reduced() { return Form == Stabilisation::selective_reduced; }
-    FRONTALIS_LAW void scalar_hourglass(Batch (&)[3][8]) const {}  // added in add_forces()
+    FRONTALIS_LAW void scalar_hourglass(Batch (&)[3][8]) const {}  // done in add_forces()
   };
 
   /// Calls visit() with the batches of a plane's tiles that hold voxels, as Voxels or VoxelsOf.
@@ -202,7 +202,7 @@ struct CpuElement
           visit(Batches{ g, g.tiles + t, t, offset, owned, with_bound, work });
   }
 
-  /// Loads the displacements of the corners and transforms them.
+  /// Loads the displacements of the corners and transforms them to modes.
   template <class Number>
   static FRONTALIS_LAW void load_modes(const Voxels& at, Number* const (&u)[3], Batch (&mode)[3][8])
   {
@@ -220,7 +220,7 @@ struct CpuElement
       physics::walsh_hadamard(mode[c]);
     }
   }
-  /// load_modes(), with the gradients at the centroids of the tissue.
+  /// Like load_modes(), with the gradients at the centroids of the tissue.
   template <class Number>
   static FRONTALIS_LAW void load_centred_modes(const Voxels& at, Number* const (&u)[3], Batch (&mode)[3][8])
   {
@@ -236,11 +236,12 @@ struct CpuElement
     return physics::kinematics(mode[0], mode[1], mode[2], at.g.scale);
   }
 
-  /// Relaxes viscous stresses to the present displacements. `work`: see CpuKernelArguments::viscous_work; may be null.
+  /// Relaxes viscous stresses towards those of the present displacements. `work`: see CpuKernelArguments::viscous_work;
+  /// may be null.
   static __attribute__((noinline)) void relax(const Voxels& at, double* work)
   {
     const Kinematics k = kinematics(at, at.g.u);
-    // `next` still holds the displacements before the step
+    // `next` still holds the displacements before the step.
     const Kinematics k_before = work == nullptr ? k : kinematics(at, at.g.next);
     physics::relax_voxel(at, Batch(at.g.viscous_elapsed), k,
                          [&](const Relaxed& before, const Relaxed& after)
@@ -291,7 +292,7 @@ struct CpuElement
       }
     for (int c = 0; c < 3; ++c)
     {
-      // one component at a time, so that each stays in registers
+      // The components are processed one by one, so that each stays in registers.
       if (Form == Stabilisation::scalar)
         physics::scalar_hourglass(hourglass, mode[c]);
       physics::stress_forces(at, P, c, mode[c]);
@@ -306,7 +307,7 @@ struct CpuElement
       }
     }
   }
-  // not inlined, so that the code for whole voxels does not change
+  // This function is not inlined, so that the code for whole voxels stays unchanged.
   template <Stabilisation Form>
   static __attribute__((noinline)) void add_cut_forces(const VoxelsOf<Form>& at, Real* below, Real* above,
                                                        const std::int32_t* base)

@@ -7,25 +7,25 @@
 namespace frontalis
 {
 
-/// Stretch and stress of a tile's fibres at the latest computation of their work, for the energy ledger.
+/// Stretch and stress of a tile's fibres when their work was last computed, for the energy ledger.
 struct FibreMemory
 {
   float squared[Tile::width];  ///< stretch squared
   float stress[Tile::width];   ///< fibre stress times weight [N m]
 };
 
-/// Arguments of one time step over planes of nodes, or of a part of it. Plain pointers only: the kernels are compiled
-/// once per instruction set, and nothing that they instantiate may be shared with other translation units. Real is the
-/// number type of the state; parameters are floats.
+/// Arguments of one time step, or of a part of it, over planes of nodes. They are plain pointers, because the kernels
+/// are compiled once per instruction set and must not instantiate anything that other translation units share. Real is
+/// the number type of the state; parameters are floats.
 template <class Real>
 struct CpuKernelArguments : physics::Kick<Real>
 {
-  const Real* u[3];           ///< displacements [m]; Tile::width numbers beyond the end can be read
+  const Real* u[3];           ///< displacements [m]; Tile::width numbers beyond the end must be readable
   Real* next[3];              ///< displacements after the step [m]
   Real* v[3];                 ///< velocities [m/s]
   Real* rounding[3];          ///< rounding errors of the displacements [m]; null without compensated precision
   const float* inverse_mass;  ///< [1/kg]
-  const float* mobility;      ///< inverse mass for the bound, 0 for held nodes [1/kg]
+  const float* mobility;      ///< inverse mass for the bound of the frequency, 0 for held nodes [1/kg]
   const Tile* tiles;
   const std::int32_t* plane_tiles;
   const std::int32_t* plane_nodes;
@@ -33,23 +33,24 @@ struct CpuKernelArguments : physics::Kick<Real>
   const TileStiffness* stiffness;
   const TileStabilisation* stabilisation;  ///< null: scalar hourglass control
   bool selective_reduced;                  ///< eight Gauss points instead of hourglass control
-  const FibreSlot* fibres;                 ///< null: effect switched off
+  const FibreSlot* fibres;                 ///< null: the effect is switched off
   const LawSlot* laws;
   const ViscousSlot* viscous;
   const CutSlot* cut;
   float* relaxed;  ///< relaxed stress times volume [N m], relaxed_tensors() * 6 * Tile::width per ViscousSlot
-  std::int32_t viscous_terms;  ///< 0: no viscosity, or switched off
+  std::int32_t viscous_terms;  ///< 0: no viscosity, or it is switched off
   Real viscous_elapsed;        ///< time since the latest relaxation [s]
-  double* viscous_work;        ///< two per plane: change of H : E, and H : E; null: not needed
-  const float* activation;     ///< one per muscle
-  const float* with_length;    ///< one per muscle: 1 or 0
-  const float* with_passive;   ///< one per muscle: 1 or 0
-  FibreMemory* fibre_memory;   ///< one per FibreSlot; null: no ledger
-  double* muscle_work;         ///< one per plane [J]; null: only fibre_memory is updated
-  Real scale[3];               ///< 1 / (4 h)
-  Real stretch_weight[3];      ///< 1/h^2 over the sum of the three
-  Real stretch_half_sum;       ///< half of that sum [1/m2]
-  Real hourglass_weight[3];    ///< 1 / (4 sqrt(3) h)
+  /// two per plane: change of H : E, and present H : E (physics/viscosity.hpp); null: not needed
+  double* viscous_work;
+  const float* activation;    ///< one per muscle
+  const float* with_length;   ///< one per muscle: 1 if the tension-length relation applies, else 0
+  const float* with_passive;  ///< one per muscle: 1 if it has passive stress, else 0
+  FibreMemory* fibre_memory;  ///< one per FibreSlot; null: there is no ledger
+  double* muscle_work;        ///< one per plane [J]; null: only fibre_memory is updated
+  Real scale[3];              ///< 1 / (4 h)
+  Real stretch_weight[3];     ///< 1/h^2 divided by the sum over the three axes
+  Real stretch_half_sum;      ///< half of that sum over the axes [1/m2]
+  Real hourglass_weight[3];   ///< 1 / (4 sqrt(3) h)
   Real dt;
   Real kick;                   ///< time over which forces change velocities: dt, except in a plan's first step [s]
   std::int32_t buffer_stride;  ///< numbers per component of a plane buffer
@@ -58,7 +59,7 @@ struct CpuKernelArguments : physics::Kick<Real>
 enum class KernelTask
 {
   step,            ///< updates v and next
-  step_and_bound,  ///< the same, and computes the squared frequency bound
+  step_and_bound,  ///< updates v and next, and computes the squared frequency bound
   forces,          ///< writes internal forces to `next`, updates nothing
   relax            ///< relaxes viscous stresses only
 };

@@ -5,8 +5,8 @@
 namespace frontalis
 {
 
-/// Steps a slab plane by plane. Each plane of voxels completes the forces of its lower plane of nodes, which then
-/// moves.
+/// Steps a slab plane by plane. When a plane of voxels has added its forces, those on its lower plane of nodes are
+/// complete, and these nodes move.
 template <class Architecture, class Real>
 struct CpuKernelBody
 {
@@ -35,12 +35,13 @@ struct CpuKernelBody
       g.muscle_work[plane] += work;
   }
 
-  /// Bound of the squared highest frequency at the nodes of a plane. `stiffness`: sums over their voxels.
+  /// Bound of the squared highest frequency at the nodes of a plane. `stiffness`: sum of the bounds of the voxels at
+  /// each node.
   static Real plane_frequency(const Arguments& g, std::int32_t plane, const Real* stiffness)
   {
     const std::int32_t first = g.plane_nodes[plane], count = g.plane_nodes[plane + 1] - first;
     const float* const mobility = g.mobility + first;
-    // one maximum per lane, so that the loop is vectorised; `odd` becomes NaN if a stiffness is NaN
+    // Each lane has a maximum of its own, so that the loop is vectorised. `odd` becomes NaN if a stiffness is NaN.
     Real most[lanes] = {}, odd[lanes] = {};
     const auto take = [&](std::int32_t n, int lane)
     {
@@ -79,7 +80,7 @@ struct CpuKernelBody
         v[n] = velocity;
         if (Compensated)
         {
-          // Kahan summation: the rounding error of the last sum is subtracted first.
+          // Kahan summation: the rounding error of the previous sum is subtracted first.
           const Real step = g.dt * velocity - rounding[n];
           const Real sum = u[n] + step;
           rounding[n] = (sum - u[n]) - step;
@@ -106,7 +107,7 @@ struct CpuKernelBody
     const std::int32_t used = (with_bound ? 4 : 3) * g.buffer_stride;
     clear(below, used);
     Real frequency_squared = 0;
-    // Voxel plane k lies between node planes k and k + 1. The lowest one serves only its upper nodes.
+    // Voxel plane k lies between node planes k and k + 1. The lowest voxel plane is computed for its upper nodes only.
     for (std::int32_t k = first - 1; k < last; ++k)
     {
       clear(above, used);

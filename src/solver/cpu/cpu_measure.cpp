@@ -8,7 +8,7 @@
 namespace frontalis
 {
 
-// Threads process their slabs; the sums of planes are then added in order.
+// Each thread processes its slab; the sums of the planes are then added in order.
 template <class Real>
 Monitor CpuSolver<Real>::monitor()
 {
@@ -35,7 +35,7 @@ Monitor CpuSolver<Real>::monitor()
   std::vector<PlaneMonitor> planes(static_cast<std::size_t>(rows_.planes));
   std::vector<StepBound> bounds(slab_.size() - 1);
   std::vector<double> stiffness(model_->voxels.size());
-  // first voxel of plane k; there are no voxels above the last plane of nodes
+  // First voxel of plane k. There are no voxels above the last plane of nodes.
   const auto first_voxel = [&](std::int32_t k)
   {
     const auto tile = rows_.plane_tiles[std::clamp(k, 0, rows_.planes - 1)];
@@ -61,7 +61,7 @@ Monitor CpuSolver<Real>::monitor()
         const std::int32_t first = slab_[t], last = slab_[t + 1];
         choice_.monitor(g, first, std::min(last, rows_.planes - 1), planes.data(), stiffness.data());
         team_.barrier();
-        // the displacements in wide_ are no longer needed: use its memory for the sums
+        // The displacements in wide_ are no longer needed, so that its memory can be used for the sums.
         bounds[t] =
             bound_of_nodes(discretisation_, *model_, stiffness.data(), { first_voxel(first - 1), first_voxel(last) },
                            { rows_.plane_nodes[first], rows_.plane_nodes[last] }, wide_[0].data());

@@ -12,7 +12,7 @@
 namespace frontalis
 {
 
-/// The CPU backend: SIMD on all cores, in single or double precision. Threads own slabs of node planes. Each also
+/// The CPU backend: SIMD on all cores, in single or double precision. Each thread owns a slab of node planes and also
 /// computes the voxel plane below its slab, so that the force on a node is summed in the same order for any number of
 /// threads.
 template <class Real>
@@ -55,8 +55,8 @@ private:
   std::string remark_;
   std::vector<std::int32_t> slab_;  // thread t owns node planes slab_[t] .. slab_[t + 1]
   std::vector<std::vector<Real>> buffers_;
-  std::array<std::vector<double>, 3> wide_;  // displacements for the monitor; empty until first use
-  Components moved_;                         // displacements other than the state's; empty until first use
+  std::array<std::vector<double>, 3> wide_;  // displacements in double precision for the monitor; empty until first use
+  Components moved_;                         // buffer for displacements other than the state's; empty until first use
 };
 
 }  // namespace frontalis

@@ -88,7 +88,8 @@ Work CpuSolver<Real>::work(bool open)
 {
   if (open)
     account_->open();
-  // In the latest step, fibres store their work. When the account is opened, they store only stress and stretch.
+  // If the account is being opened, fibres store only their stress and stretch; otherwise also their work in the latest
+  // step.
   Arguments g = arguments(0, conditions_.activation.data());
   if (open)
     g.muscle_work = nullptr;

@@ -8,8 +8,8 @@
 namespace frontalis
 {
 
-/// During its lifetime, this thread's arithmetic treats denormal numbers as zero. A decaying motion would otherwise
-/// produce them, and each operation on them is many times slower.
+/// While an object of this class exists, its thread treats denormal numbers as zero. A decaying motion would produce
+/// them, and each operation on a denormal number is many times slower.
 class FlushDenormals
 {
 public:

@@ -8,7 +8,7 @@
 namespace frontalis
 {
 
-/// Lanes of a kernel without SIMD.
+/// Scalar counterpart of RecordLanes, for a kernel without SIMD.
 template <class Number>
 struct OneLane
 {

@@ -8,7 +8,7 @@
 namespace frontalis
 {
 
-/// Kernels of effects on nodes.
+/// Kernels of the effects on nodes, for one instruction set.
 template <class Real>
 struct PartKernels
 {

@@ -7,8 +7,8 @@
 namespace frontalis
 {
 
-/// Lanes of an instruction set that load, gather and store records of four numbers, of which a vector is the first
-/// three.
+/// SIMD lanes that load, gather and store vectors as records of four numbers, the first three of which are the
+/// components.
 template <class Architecture>
 struct RecordLanes
 {
@@ -21,7 +21,7 @@ struct RecordLanes
   static FRONTALIS_LAW void store(const Batch& x, float* p) { x.store_unaligned(p); }
   static FRONTALIS_LAW bool any_positive(const Batch& x) { return xsimd::any(x > Batch(0.0f)); }
 
-  /// One bit per lane: whether it is positive.
+  /// Returns one bit per lane: whether the lane's number is positive.
   static FRONTALIS_LAW std::uint32_t positive(const Batch& x)
   {
     alignas(64) float lane[count];
@@ -72,7 +72,7 @@ struct RecordLanes
 #endif
   }
 
-  /// Stores vectors as records; that of lane l begins at p[record(l)].
+  /// Stores vectors as records; the record of lane l begins at p[record(l)].
   static FRONTALIS_LAW void store_records(const Vector& v, float* p)
   {
 #if defined(__SSE2__)
@@ -112,7 +112,7 @@ private:
     return _mm_loadh_pi(_mm_castpd_ps(_mm_load_sd(reinterpret_cast<const double*>(first))),
                         reinterpret_cast<const __m64*>(second));
   }
-  // Sets each 128-bit part of a register to make(index of its first lane).
+  // Sets each 128-bit part of a register to make(index of the part's first lane).
   template <class Register, class Make>
   static FRONTALIS_LAW void each_quarter(Register& to, const Make& make)
   {
@@ -131,7 +131,7 @@ private:
     }
 #endif
   }
-  // _mm_shuffle_ps in each 128-bit part.
+  // Applies _mm_shuffle_ps to each 128-bit part.
   template <int mask>
   static FRONTALIS_LAW Batch shuffled(const Batch& a, const Batch& b)
   {

@@ -6,8 +6,8 @@
 namespace frontalis
 {
 
-/// Up to `width` triangles of a shell: physics::ShellTriangle and the numbers of its vertices, one triangle per lane.
-/// Lanes beyond the last triangle have no stiffness.
+/// Up to `width` triangles of a shell, one per lane: physics::ShellTriangle and the indices of their vertices. Lanes
+/// beyond the last triangle have no stiffness.
 template <class Real>
 struct ShellBlock
 {
@@ -27,8 +27,9 @@ struct ShellVector
   alignas(4 * sizeof(Real)) Real x[4];
 };
 
-/// Weighted sums of vectors: the interpolation of bound points, and its transpose. Each sum is filled up to a multiple
-/// of four terms with terms of weight 0, since most of the time would go into guessing wrongly where a short sum ends.
+/// Weighted sums of vectors, for the interpolation of bound points and for its transpose. Each sum is filled up to a
+/// multiple of four terms with terms of weight 0, because wrong branch predictions at the ends of short sums would
+/// otherwise take most of the time.
 template <class Real>
 struct WeightedSums
 {
@@ -51,24 +52,25 @@ struct WeightedSums
     }
   }
 
-  std::vector<std::int32_t> begin{ 0 };  ///< first term of each sum, and the number of terms
+  std::vector<std::int32_t> begin{ 0 };  ///< first term of each sum; the last entry is the number of terms
   std::vector<Term> terms;
 };
 
 template <class Real>
 struct ShellKernels
 {
-  /// Sums [first, last) of vectors whose components are in three arrays.
+  /// Computes the sums [first, last) of vectors whose components are in three arrays.
   void (*place)(const WeightedSums<Real>& sums, const Real* const in[3], ShellVector<Real>* out, std::int32_t first,
                 std::int32_t last);
-  /// Forces of blocks [first, last) at the displacements u of vertices, as [block][vertex of the triangle][place].
+  /// Finds the forces of blocks [first, last) at the displacements u of vertices, as [block][vertex of the
+  /// triangle][place].
   void (*forces)(const ShellBlock<Real>* blocks, const ShellVector<Real>* u, ShellVector<Real>* forces,
                  std::int32_t first, std::int32_t last);
-  /// Sums [first, last) of vectors.
+  /// Computes the sums [first, last) of vectors.
   void (*sum)(const WeightedSums<Real>& sums, const ShellVector<Real>* in, ShellVector<Real>* out, std::int32_t first,
               std::int32_t last);
-  /// Where forces() writes the force on a vertex of the triangle in a lane: not in the order of lanes, which saves
-  /// permutations.
+  /// The place where forces() writes the force on a vertex of the triangle in a lane. Places are not in the order of
+  /// lanes, because that order would need permutations.
   int (*place_of_lane)(int lane);
 };
 

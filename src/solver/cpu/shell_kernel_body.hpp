@@ -8,8 +8,8 @@
 namespace frontalis
 {
 
-/// The kernel, for lanes of a kind that loads, gathers and stores them. The kind is part of every type, so that
-/// instruction sets share no template instantiation.
+/// The kernels of shells. `Lanes` loads, gathers and stores batches; it is part of every type, so that code for
+/// different instruction sets shares no template instantiation.
 template <class Lanes>
 struct ShellKernelBody
 {
@@ -79,7 +79,7 @@ struct ShellKernelBody
   static ShellKernels<Real> all() { return { place, forces, sum, place_of_lane }; }
 
 private:
-  // One register of the processor: compilers do not find by themselves that a vector fits in it.
+  // A vector type of the compiler, because compilers do not find by themselves that four numbers fit into one register.
   using Four [[gnu::vector_size(4 * sizeof(Real))]] = Real;
 
   template <class Vectors>

@@ -6,7 +6,7 @@ namespace frontalis
 {
 
 /// Loads and sums of SIMD batches that xsimd lacks. The lanes of a batch are voxels along x, in strips of `Strip`
-/// lanes; strips need not be contiguous in memory.
+/// lanes. Different strips need not be contiguous in memory.
 template <class Architecture, class Real, int Strip>
 struct SimdLanes
 {
@@ -56,8 +56,8 @@ struct SimdLanes
     return load(first);
   }
 
-  /// Adds forces to the nodes of a row: `low` to the lower nodes of the voxels, `high` to the next nodes. Neighbours
-  /// share nodes, so both are first added in registers: a load that overlaps a recent store would stall.
+  /// Adds forces to the nodes of a row: `low` to the lower nodes of the voxels, `high` to the next nodes. Neighbouring
+  /// voxels share nodes, so that both are first added in registers: a load that overlaps a recent store would stall.
   static FRONTALIS_LAW void add(Real* first, [[maybe_unused]] Real* second, const Batch& low, const Batch& high)
   {
     alignas(64) Real last[count];
@@ -75,7 +75,7 @@ struct SimdLanes
       }
       const __m512i next = _mm512_set_epi32(14, 13, 12, 11, 10, 9, 8, 8, 6, 5, 4, 3, 2, 1, 0, 0);
       const __m512 sum = _mm512_add_ps(low, _mm512_maskz_permutexvar_ps(0xfefe, next, high));
-      // one strip after the other, because they may share nodes
+      // The strips are added one after the other, because they may share nodes.
       _mm256_storeu_ps(first, _mm256_add_ps(_mm256_loadu_ps(first), _mm512_castps512_ps256(sum)));
       first[Strip] += last[Strip - 1];
       _mm256_storeu_ps(second, _mm256_add_ps(_mm256_loadu_ps(second), _mm512_extractf32x8_ps(sum, 1)));

@@ -28,7 +28,7 @@ struct Number<xsimd::batch<float, Architecture>>
   static FRONTALIS_LAW Batch log(const Batch& a) { return xsimd::log(a); }
   static constexpr bool is_double = false;
 
-  /// First guess from the exponent (3.4 % error), then two corrections of cubic convergence, exact to 1 or 2 ulp.
+  /// Finds a first guess from the exponent (error 3.4 %) and corrects it twice with cubic convergence, to within 2 ulp.
   static FRONTALIS_LAW Batch inverse_cube_root(const Batch& a)
   {
     using Integers = xsimd::batch<std::int32_t, Architecture>;
@@ -44,7 +44,7 @@ struct Number<xsimd::batch<float, Architecture>>
   }
 };
 
-/// The same in double precision.
+/// A SIMD batch of doubles as the number type of a law, one voxel per lane.
 template <class Architecture>
 struct Number<xsimd::batch<double, Architecture>>
 {

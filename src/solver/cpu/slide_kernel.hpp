@@ -5,7 +5,8 @@
 namespace frontalis
 {
 
-/// Up to `width` neighbouring nodes, with the planes normal . u = offset of those that slide; zero normals for others.
+/// Up to `width` neighbouring nodes. Those that slide have the plane normal . u = offset; the normals of others are
+/// zero.
 template <class Real>
 struct SlidingBlock
 {
@@ -15,10 +16,11 @@ struct SlidingBlock
   Real offset[width];
   Real speed[width];         ///< velocity of the plane along its normal [m/s]
   Real reference[3][width];  ///< displacement at which the plane was found
-  Real slip_squared[width];  ///< squared distance over which the plane is valid; negative: no plane yet
+  Real slip_squared[width];  ///< squared distance over which the plane is valid; negative: the node has no plane yet
 };
 
-/// Moves the sliding nodes of blocks [first, last) back onto their planes. Plain pointers: see CpuKernelArguments.
+/// Arguments of the kernel that moves the sliding nodes of blocks [first, last) back onto their planes. They are plain
+/// pointers, for the reason given at CpuKernelArguments.
 template <class Real>
 struct SlideArguments
 {

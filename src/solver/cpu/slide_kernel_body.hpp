@@ -7,7 +7,7 @@
 namespace frontalis
 {
 
-// The architecture is part of every type, so that instruction sets share no template instantiation.
+// The architecture is part of every type, so that code for different instruction sets shares no template instantiation.
 template <class Architecture>
 struct SlideKernelBody
 {
@@ -74,7 +74,7 @@ struct SlideKernelBody
         slide(g, block, u, v);
         continue;
       }
-      // nodes beyond the block belong to another thread, so use a padded copy
+      // The nodes beyond the block belong to another thread, so that the loop works on a padded copy.
       float copy[6][Block::width] = {};
       float* const u_copy[3] = { copy[0], copy[1], copy[2] };
       float* const v_copy[3] = { copy[3], copy[4], copy[5] };

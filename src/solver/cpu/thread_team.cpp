@@ -15,8 +15,8 @@ namespace frontalis
 namespace
 {
 
-constexpr int spins_before_yield = 4000;  // polls; threads with equal work usually meet within them
-constexpr int most_threads = 1024;        // upper limit, to reject typing errors
+constexpr int spins_before_yield = 4000;  // number of polls; threads with equal work usually meet within them
+constexpr int most_threads = 1024;        // upper limit that catches typing errors
 
 void relax()
 {

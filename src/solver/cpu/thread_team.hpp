@@ -10,7 +10,8 @@
 namespace frontalis
 {
 
-/// Threads that run one task together. Their barrier is cheap enough for every step: it polls briefly, then yields.
+/// Threads that run one task together. Their barrier is fast enough for every time step, because it polls briefly
+/// before it yields.
 class ThreadTeam
 {
 public:
@@ -23,7 +24,7 @@ public:
   int size() const { return static_cast<int>(workers_.size()) + 1; }
   /// Runs task(thread) on every thread and returns when all are done. The caller is thread 0. The task must not throw.
   void run(const std::function<void(int)>& task);
-  /// Waits for all threads of the team. Each of them calls it from inside a task.
+  /// Waits for all threads of the team. Each thread must call barrier() from inside the task.
   void barrier();
 
 private:

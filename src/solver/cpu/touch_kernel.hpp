@@ -14,15 +14,16 @@ constexpr int touch_width = 16;
 template <class Real>
 struct VertexBlock
 {
-  std::int32_t node[4][touch_width];   ///< the voxel's corners 0, 2, 4 and 6; the next node is the next corner
-  std::int32_t bound[4][touch_width];  ///< the same, counted over the nodes that vertices are bound to
-  Real coordinates[3][touch_width];    ///< in the voxel
-  Real tangent[2][3][touch_width];     ///< at rest
+  /// corners 0, 2, 4 and 6 of the voxel; corners 1, 3, 5 and 7 are the nodes that follow them
+  std::int32_t node[4][touch_width];
+  std::int32_t bound[4][touch_width];  ///< the same corners, as indices among the nodes to which vertices are bound
+  Real coordinates[3][touch_width];    ///< position in the voxel
+  Real tangent[2][3][touch_width];     ///< tangents at rest
   std::int32_t plane[touch_width];     ///< plane of the vertex's voxel; -2: the lane is empty
-  Real inverse_spacing[3];             ///< of the grid [1/m]
+  Real inverse_spacing[3];             ///< 1 over the spacing of the grid [1/m]
 };
 
-/// Vertices in motion. Vectors that are gathered are records of four numbers.
+/// Present state of vertices. Vectors that are gathered are stored as records of four numbers.
 template <class Real>
 struct MovedVertices
 {
@@ -30,34 +31,35 @@ struct MovedVertices
 
   Real* record;  ///< displacement [m] and normal
   Real* change;  ///< change of the displacement in the latest step [m]; null without friction
-  /// Dual vectors of a vertex's tangents: the change of the normal is minus the sum over both tangents of their dual
-  /// times (normal . change of the tangent). [block][6][lane]
+  /// Dual vectors of a vertex's two tangents, as [block][6][lane]: the normal changes by minus the sum, over both
+  /// tangents, of the dual vector times (normal . change of the tangent).
   Real* dual;
 };
 
-/// The numbers of vertices and triangles of pairs of a vertex and a triangle of another surface, one pair per lane.
-/// They stand apart from PairBlock because adding up forces needs them alone.
+/// The indices of vertices and triangles of pairs, one pair per lane. A pair is a vertex and a triangle of another
+/// surface. These indices are not part of PairBlock, because adding up forces needs only them.
 struct PairVertices
 {
-  std::int32_t vertex[4][touch_width];  ///< the point, and the triangle's corners
-  std::int32_t triangle[touch_width];   ///< -1: none
+  std::int32_t vertex[4][touch_width];  ///< the pair's vertex, and the triangle's corners
+  std::int32_t triangle[touch_width];   ///< -1: the lane has no pair
 };
-/// The other numbers of these pairs (physics/surface_touch.hpp). Lanes beyond the last pair are copies of the first one
+/// The other values of these pairs (physics/surface_touch.hpp). Lanes beyond the last pair are copies of the first one
 /// without stiffness.
 template <class Real>
 struct PairBlock
 {
-  Real rest[3][3][touch_width];  ///< at rest, from corner 0: the point, corners 1 and 2 [m]
+  /// positions of the pair's vertex and of corners 1 and 2 at rest, relative to corner 0 [m]
+  Real rest[3][3][touch_width];
   Real stiffness[touch_width], softer[3][touch_width], inner[3][touch_width];
   Real overlap[touch_width], friction[touch_width];
-  // state
+  // State of friction:
   Real held[touch_width];  ///< physics::PairGrip::stiffness
   Real pressed[touch_width], along[touch_width], stretch[3][touch_width];
 };
 
 /// Forces of pairs on the triangle's corners [N] and on the corners' normals (physics::corner_turn) [N m]. The force on
-/// the point is minus the sum of the former. The record of lane l begins at number record[l] of its list
-/// (TouchKernels).
+/// the pair's vertex is minus the sum of the forces on the corners. The record of lane l begins at number record[l] of
+/// its list (TouchKernels).
 template <class Real>
 struct PairForceBlock
 {
@@ -65,7 +67,7 @@ struct PairForceBlock
   Real stored[touch_width], lost[touch_width];  // [J]
 };
 
-/// Plain pointers, for the reason given at CpuKernelArguments.
+/// Arguments of the kernel: plain pointers, for the reason given at CpuKernelArguments.
 template <class Real>
 struct PairArguments
 {
@@ -75,12 +77,13 @@ struct PairArguments
   double* due;             ///< per block, the value of `way` at which its pairs are evaluated again [m]
   std::uint32_t* touches;  ///< bits of the lanes that touch, and bit touch_width if friction has lost energy
   MovedVertices<Real> vertices;
-  double way;  ///< bound of how much closer a vertex and a triangle can have come to each other [m]
+  double way;  ///< upper bound of the distance by which a vertex and a triangle have approached each other [m]
   Real response;
-  Real deepest;   ///< depth to which points are held [m]
-  Real patience;  ///< motion after which a pair behind its triangle that does not touch is checked again [m]
+  Real deepest;   ///< largest depth to which points are held [m]
+  Real patience;  ///< motion after which a pair that is behind its triangle without touching it is checked again [m]
   bool rubs;      ///< whether there is friction
-  /// Lets a pair whose foot lies beyond its triangle's edge go on to the triangle there.
+  /// Called for a pair whose foot lies beyond an edge of its triangle: moves the pair to the triangle on the other
+  /// side.
   void (*go_on)(void* context, std::int32_t block, int lane);
   void* context;
 };
@@ -88,13 +91,13 @@ struct PairArguments
 template <class Real>
 struct TouchKernels
 {
-  /// Places vertices of blocks [first, last) at the displacements u of nodes.
+  /// Finds the positions of vertices of blocks [first, last) at the displacements u of nodes.
   void (*place)(const VertexBlock<Real>* blocks, const MovedVertices<Real>& vertices,
                 const std::array<const Real*, 3>& u, std::int32_t first, std::int32_t last);
-  /// Finds the forces of the pairs in those of the blocks [first, last) for which `due` is reached.
+  /// Finds the forces of the pairs in the blocks of [first, last) whose value `due` is reached.
   void (*touch)(const PairArguments<Real>& arguments, std::int32_t first, std::int32_t last);
-  /// Adds forces of vertices of a block to those of bound nodes in planes [first_plane, end_plane), which are records.
-  /// `sums`: force on each vertex and on its normal; set to 0 afterwards.
+  /// Passes forces on vertices of a block on to bound nodes in planes [first_plane, end_plane). node_forces has a
+  /// record per bound node. `sums`: force on each vertex and on its normal; they are set to 0 afterwards.
   void (*spread)(const VertexBlock<Real>* blocks, const MovedVertices<Real>& vertices, Real* sums, Real* node_forces,
                  std::int32_t block, std::int32_t first_plane, std::int32_t end_plane);
   std::array<std::int32_t, touch_width> record;

@@ -6,8 +6,8 @@
 namespace frontalis
 {
 
-/// The kernels. `Lanes` loads, gathers and stores batches; it is part of every type, so that instruction sets share no
-/// template instantiation.
+/// The kernels of contact between surfaces. `Lanes` loads, gathers and stores batches; it is part of every type, so
+/// that code for different instruction sets shares no template instantiation.
 template <class Lanes>
 struct TouchKernelBody
 {
@@ -31,7 +31,7 @@ struct TouchKernelBody
     Lanes::store(v.z, p[2] + lane);
   }
 
-  // Components of the dual vector of tangent t of vertices from `at` on.
+  // Components of the dual vectors of tangent t, for the vertices that begin at index `at`.
   static FRONTALIS_LAW std::array<Real*, 3> dual(const Moved& vertices, std::ptrdiff_t at, int t)
   {
     Real* const first = vertices.dual + (6 * (at / touch_width) + 3 * t) * touch_width + at % touch_width;
@@ -58,7 +58,7 @@ struct TouchKernelBody
     return { Batch(by[0]) * v.x, Batch(by[1]) * v.y, Batch(by[2]) * v.z };
   }
 
-  // Weights of the lower and the upper side of the voxel along each axis.
+  // Interpolation weights of the lower and the upper side of the voxel along each axis.
   struct Weights
   {
     FRONTALIS_LAW Weights(const VertexBlock<Real>& b, int lane)
@@ -86,7 +86,7 @@ struct TouchKernelBody
   {
     const Batch none = Number::of(0);
     const Weights w(b, lane);
-    // displacement, and its derivatives by the coordinates
+    // `sum` is the displacement; the others are its derivatives with respect to the coordinates.
     Vector sum{ none, none, none }, by_x = sum, by_y = sum, by_z = sum;
     for (int two = 0; two < 4; ++two)
     {
@@ -129,7 +129,7 @@ struct TouchKernelBody
     return Lanes::gather_records(vertices.record + 4, Moved::stride, index);
   }
 
-  // The triangle relative to its corner 0, which makes differences of places exact.
+  // The triangle, and the pair's vertex, relative to the triangle's corner 0. Differences of positions are then exact.
   static FRONTALIS_LAW physics::SurfaceTriangle<Batch> triangle(const PairVertices& at, const PairBlock<Real>& b,
                                                                 const Moved& vertices, int lane, Vector& point)
   {
@@ -145,7 +145,7 @@ struct TouchKernelBody
     return out;
   }
 
-  // Moves pairs to the next triangle if their foot is beyond an edge by more than `edge_error`. Returns whether one
+  // Moves pairs whose foot is beyond an edge by more than `edge_error` to the next triangle. Returns whether a pair
   // moved.
   static bool go_on(const PairArguments<Real>& g, std::int32_t block, int lane, const Batch (&weight)[3])
   {
@@ -168,7 +168,6 @@ struct TouchKernelBody
     return Lanes::gather_records(vertices.change, 4, index);
   }
 
-  // The result of a batch of pairs.
   struct Result
   {
     Batch wait;             // motion after which the pairs must be checked again [m]
@@ -278,7 +277,7 @@ struct TouchKernelBody
       const Vector direction = consecutive(vertices.record + Moved::stride * at + 4, Moved::stride);
       for (int row = 0; row < 8; ++row)
         Lanes::store(none, sums + 8 * at + row * Lanes::count);
-      // the normal turns with the derivatives of the displacement along the tangents
+      // The normal turns with the derivatives of the displacement along the tangents.
       const Vector along = scaled(dot(turn, load(dual(vertices, at, 0), 0)) * load(b.tangent[0], lane) +
                                       dot(turn, load(dual(vertices, at, 1), 0)) * load(b.tangent[1], lane),
                                   b.inverse_spacing);
@@ -300,7 +299,7 @@ struct TouchKernelBody
           Lanes::add_record(part[2 * two] + Lanes::record(l), to);
           Lanes::add_record(part[2 * two + 1] + Lanes::record(l), to + 4);
         };
-        if (plane >= first_plane && plane < end_plane)  // nodes in the lower plane of the voxel
+        if (plane >= first_plane && plane < end_plane)  // the nodes are in the lower plane of the voxel
         {
           add(0);
           add(1);
@@ -323,8 +322,8 @@ struct TouchKernelBody
   }
 
 private:
-  // Tolerance in barycentric coordinates, above the rounding errors of a foot, so that points on an edge do not go to
-  // and fro.
+  // Tolerance in barycentric coordinates. It is above the rounding errors of a foot, so that a point on an edge does
+  // not change triangles in every step.
   static constexpr double edge_error = 3e-5;
 };
 

@@ -9,7 +9,7 @@ namespace
 
 using TileVoxels = std::array<VoxelProperties, Tile::width>;
 
-// Adds the fibres of a tile: one slot per muscle, in ascending order.
+// Adds the fibres of a tile: one slot per muscle, in ascending order of muscles.
 void add_fibres(const Model& model, const TileVoxels& voxels, Tile& tile, std::vector<FibreSlot>& slots)
 {
   tile.fibre_begin = static_cast<std::int32_t>(slots.size());
@@ -40,7 +40,8 @@ void add_fibres(const Model& model, const TileVoxels& voxels, Tile& tile, std::v
   tile.fibre_end = static_cast<std::int32_t>(slots.size());
 }
 
-// Adds the laws of a tile other than neo-Hookean, one slot per law. Unused lanes keep valid parameters and weight 0.
+// Adds the laws of a tile other than neo-Hookean, one slot per law. Unused lanes have valid parameters and the weight
+// 0.
 void add_laws(const TileVoxels& voxels, Tile& tile, std::vector<LawSlot>& slots)
 {
   tile.law_begin = static_cast<std::int32_t>(slots.size());
@@ -134,7 +135,7 @@ TileStabilisation stabilisation_of(const TileVoxels& voxels)
   return s;
 }
 
-// Forms a tile from the voxels from index e onwards, and advances e past them.
+// Forms a tile from the voxels that begin at index e, and advances e past them.
 Tile next_tile(const Model& model, std::int32_t& e)
 {
   const auto count = static_cast<std::int32_t>(model.voxels.size());
@@ -142,7 +143,7 @@ Tile next_tile(const Model& model, std::int32_t& e)
   Tile tile{};
   for (int strip = 0; strip < Tile::strips; ++strip)
   {
-    // an empty strip reads and writes zeros at the address of the previous strip
+    // An empty strip reads and writes zeros at the address of the previous strip.
     const bool any = e < count && model.voxels[e][2] == plane;
     const auto first = any ? e : tile.first_voxel[strip - 1];
     tile.first_voxel[strip] = first;

@@ -17,7 +17,7 @@ struct Tile
   static constexpr int strips = width / strip;
   std::int32_t node[strips][4];      ///< first node of each row
   std::int32_t count[strips];        ///< voxels, 0..8
-  std::int32_t first_voxel[strips];  ///< in the model's order; the strip's other voxels follow
+  std::int32_t first_voxel[strips];  ///< index of the strip's first voxel in the model; its other voxels follow
   std::int32_t fibre_begin;          ///< range of FibreSlots
   std::int32_t fibre_end;
   std::int32_t law_begin;  ///< range of LawSlots
@@ -25,7 +25,7 @@ struct Tile
   std::int32_t viscous;  ///< index of the ViscousSlot; -1: none
   std::int32_t cut;      ///< index of the CutSlot; -1: all voxels are whole
 
-  /// Voxel of a lane, or -1.
+  /// Index of the voxel in a lane, or -1.
   std::int32_t voxel(int lane) const
   {
     return lane % strip < count[lane / strip] ? first_voxel[lane / strip] + lane % strip : -1;
@@ -47,23 +47,24 @@ struct TileStabilisation
   float bending[Tile::width], coupling[Tile::width], torsion[Tile::width], warping[Tile::width];
 };
 
-/// The fibres of one muscle in a tile; weight 0 in lanes of voxels without them.
+/// The fibres of one muscle in a tile. Lanes of voxels without them have the weight 0.
 struct FibreSlot
 {
-  float weight[Tile::width];  ///< fraction of the voxel times its tissue volume times the stress reference [N m]
+  /// fraction of the voxel that is this muscle, times tissue volume and stress reference [N m]
+  float weight[Tile::width];
   float x[Tile::width], y[Tile::width], z[Tile::width];
   std::int32_t muscle;
 };
 
-/// A law other than neo-Hookean in a tile; weight 0 in lanes of voxels without it.
+/// A law other than neo-Hookean in a tile. Lanes of voxels without it have the weight 0.
 struct LawSlot
 {
   Law law;
-  std::int32_t material;                                    ///< LawPart::material
-  float weight[Tile::width];                                ///< fraction times tissue volume [m3]
-  float per_tangent[Tile::width];                           ///< LawPart::per_tangent [m]
-  float at_rest[Tile::width];                               ///< tangent stiffness at rest [Pa]
-  float parameters[physics::parameter_slots][Tile::width];  ///< order: physics/materials/description.hpp
+  std::int32_t material;           ///< LawPart::material
+  float weight[Tile::width];       ///< fraction of the voxel's tissue, times tissue volume [m3]
+  float per_tangent[Tile::width];  ///< LawPart::per_tangent [m]
+  float at_rest[Tile::width];      ///< tangent stiffness at rest [Pa]
+  float parameters[physics::parameter_slots][Tile::width];  ///< ordered as in physics/materials/description.hpp
 };
 
 /// Prony terms of a tile's voxels.
@@ -81,20 +82,20 @@ struct CutSlot
 };
 
 /// The voxels of a model in tiles, plane by plane (k), and the nodes of each plane. Tiles have the same width for every
-/// instruction set; a narrower one processes a tile in several parts.
+/// instruction set; one with fewer lanes processes a tile in several parts.
 struct VoxelRows
 {
   VoxelRows(const Model& model, const Discretisation& discretisation);
   /// Computes the stiffness bounds again after effects were switched.
   void renew_bounds(const Discretisation& discretisation);
-  /// Lists the arrays; those of fibres are attributed to the effect `of_fibres`.
+  /// Lists the arrays. The arrays of fibres are attributed to the effect `of_fibres`.
   void list_arrays(Effect of_fibres, ArrayList& list) const;
 
   std::int32_t planes = 0;  ///< number of node planes
   std::vector<Tile> tiles;
-  std::vector<std::int32_t> plane_tiles;         ///< tiles of voxel plane k: plane_tiles[k] .. plane_tiles[k + 1]
-  std::vector<std::int32_t> plane_nodes;         ///< nodes of plane k, likewise
-  std::vector<TileStiffness> stiffness;          ///< one per tile
+  std::vector<std::int32_t> plane_tiles;  ///< the tiles of voxel plane k are plane_tiles[k] .. plane_tiles[k + 1]
+  std::vector<std::int32_t> plane_nodes;  ///< the nodes of node plane k are plane_nodes[k] .. plane_nodes[k + 1]
+  std::vector<TileStiffness> stiffness;   ///< one per tile
   std::vector<TileStabilisation> stabilisation;  ///< one per tile; empty without assumed-strain hourglass control
   std::vector<FibreSlot> fibres;
   std::vector<LawSlot> laws;

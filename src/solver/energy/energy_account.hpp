@@ -19,9 +19,10 @@ struct Work
   double viscous = 0;     ///< absorbed by viscous stresses
 };
 
-/// Accounts for the work of each step's impulses on the nodes. Impulses act along the mean of the velocities before and
-/// after the step, so that the sum is exactly the change of kinetic energy. Each plane is summed by itself in double
-/// precision, so that the result does not depend on the thread that sums it. Real is the backend's number type.
+/// Records the work of each step's impulses on the nodes. An impulse acts along the mean of the velocities before and
+/// after the step, so that all works add up to the change of kinetic energy exactly. Each plane has its own sums, in
+/// double precision, so that the result does not depend on which thread processes a plane. Real is the backend's number
+/// type.
 template <class Real>
 class EnergyAccount
 {
@@ -34,9 +35,9 @@ public:
   /// Stores the velocities after the update and the loads, before constraints.
   void unconstrained(std::int32_t first, std::int32_t last, const Real* const v[3]) { copy(first, last, v, free_); }
   /// Adds the step's work in planes [first, last). damping [1/s], dt [s]; kick: time over which forces changed
-  /// velocities [s]; u_before, u: displacements before and after the step [m]. If constraints moved a node by d in
-  /// addition to dt v, the mean of the other forces in this step and the next did work along d too, which the
-  /// constraints absorbed.
+  /// velocities [s]; u_before, u: displacements before and after the step [m]. Constraints may have moved a node by d
+  /// in addition to dt v. The mean of the other forces in this step and the next then does work along d too, which the
+  /// constraints absorb.
   void after(std::int32_t first, std::int32_t last, const Real* const u_before[3], const Real* const u[3],
              const Real* const v[3], double damping, double dt, double kick);
   /// Adds the friction work in plane k. `restricted`: a RestrictedNodes<Real>.
@@ -47,7 +48,7 @@ public:
     const Real* const free[3] = { free_[0].data(), free_[1].data(), free_[2].data() };
     planes_[k].friction += restricted.friction_loss(plane_nodes_[k], plane_nodes_[k + 1], mass_, old, free, v);
   }
-  /// Adds the work of a force on a node of a plane during the step. Call it after after(), with the same `kick`.
+  /// Adds the work of a force on a node of a plane in the step. Call load() after after(), with the same `kick`.
   void load(std::int32_t plane, std::int32_t node, const std::array<double, 3>& force, const Real* const v[3],
             double kick);
   Work work() const;
@@ -55,7 +56,7 @@ public:
   void list_arrays(ArrayList& list);
 
   std::vector<double> muscle;   ///< work of fibres, one per plane, filled by the backend [J]
-  std::vector<double> viscous;  ///< two per plane: sum of change of H : E, and present H : E (physics/viscosity.hpp)
+  std::vector<double> viscous;  ///< two per plane: change of H : E, and present H : E (physics/viscosity.hpp)
 
 private:
   using Field = std::array<std::vector<Real>, 3>;

@@ -13,10 +13,11 @@ namespace frontalis
 namespace
 {
 
-constexpr double margin = 2;             // safety factor for what the bound neglects
-constexpr double active_stretch = 1.2;   // range of stretch in which a fibre pulls: 0.4 to 1.6
-constexpr double passive_stretch = 0.3;  // energy of passive fibres at a stretch of 1.6, over tension times volume
-constexpr double small_strain = 1e-4;    // strain whose energy may come from rounding errors alone
+constexpr double margin = 2;            // safety factor for effects that the bound neglects
+constexpr double active_stretch = 1.2;  // range of stretch in which a fibre pulls: 0.4 to 1.6
+// energy of passive fibres at a stretch of 1.6, divided by tension times volume
+constexpr double passive_stretch = 0.3;
+constexpr double small_strain = 1e-4;  // strain whose energy rounding errors alone may supply
 
 }  // namespace
 
@@ -25,7 +26,7 @@ EnergyBound::EnergyBound(const Model& model) : model_(model), fibres_(model.musc
   const Discretisation discretisation(model);
   viscous_ = discretisation.viscous_terms > 0;
 
-  // index of the bone, or the number of bones plus the index of the load, that drives each node
+  // For each node, the index of the bone that drives it, or the number of bones plus the index of the load that does.
   const auto bones = static_cast<std::int32_t>(model.bones.size());
   std::vector<std::int32_t> driver = moving_bones(model);
   for (const auto& node : model.prescribed)
@@ -89,7 +90,7 @@ double EnergyBound::most(const Interval& interval) const
     const Load& load = model_.loads[nodes.index];
     const double part = physics::ramped(interval.end, load.ramp) - physics::ramped(interval.begin, load.ramp);
     const auto& d = load.value;
-    // without a ramp, nodes jump in the first step
+    // Without a ramp, nodes jump in the first step.
     const double share = interval.begin == 0 && load.ramp == 0 ? 1 : part;
     given += 0.5 * nodes.stiffness * share * share * (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
   }

@@ -8,7 +8,7 @@
 namespace frontalis
 {
 
-/// An upper bound of the energy that a motion can have: see Guard.
+/// An upper bound of the energy that a motion can have. Guard documents the formula.
 class EnergyBound
 {
 public:
@@ -23,14 +23,14 @@ public:
     std::vector<double> bone_way;   ///< length of each bone's path [m]
     double largest_internal = 0;    ///< largest internal energy before the interval [J]
   };
-  double most(const Interval& interval) const;  ///< [J]
+  double most(const Interval& interval) const;  ///< upper bound of the energy at the end of the interval [J]
   double floor() const { return floor_; }       ///< energy of a strain of 1e-4 everywhere [J]
 
 private:
-  // Sum of eight times the stiffness bound over the voxels that are attached to a bone or to prescribed nodes [N/m].
+  // Eight times the stiffness bound, summed over the voxels at a bone or at prescribed nodes [N/m].
   struct Driven
   {
-    std::int32_t index;  // bone or load
+    std::int32_t index;  // index of the bone or load
     double stiffness;
   };
 

@@ -32,7 +32,7 @@ EnergyLedger empty_ledger()
   using Kind = EnergyTerm::Kind;
   EnergyLedger ledger;
   ledger.terms = {
-    { "kinetic", Kind::stored },   // 1/2 m v(n - 1/2) . v(n + 1/2), which central differences conserve
+    { "kinetic", Kind::stored },   // m v(n - 1/2) . v(n + 1/2) / 2, which central differences conserve
     { "internal", Kind::stored },  // elastic energy of the materials
     { "hourglass", Kind::stored }, { "viscous", Kind::lost },  // absorbed by viscous stresses
     { "damping", Kind::lost },     { "friction", Kind::lost },
@@ -42,7 +42,8 @@ EnergyLedger empty_ledger()
   };
   for (const EnergyTerm& term : energy_terms_of_effects())
     ledger.terms.push_back(term);
-  ledger.terms.push_back({ "constraint", Kind::work });  // of bones, paths and sliding surfaces, without friction
+  // of bones, prescribed paths and sliding surfaces, without friction
+  ledger.terms.push_back({ "constraint", Kind::work });
   return ledger;
 }
 
@@ -72,7 +73,8 @@ void EnergyLedgerKeeper::open(double time, double dt)
   const EnergyLedger now = balance(time, dt);
   for (const EnergyTerm& term : now.terms)
     ledger_.initial += term.kind == EnergyTerm::Kind::stored ? term.value : 0;
-  // the ledger starts at the displacements, half a step after the velocities: subtract the work in between
+  // The ledger starts at the time of the displacements, half a step after that of the velocities, so that the work in
+  // between is subtracted.
   ledger_.initial = ledger_.initial - now["gravity"] - now["load"] - now["constraint"];
 }
 
@@ -98,7 +100,7 @@ EnergyLedger EnergyLedgerKeeper::balance(double time, double dt)
   return l;
 }
 
-// Surface loads, and the correction of gravity on nodes whose mass is scaled.
+// Surface loads, and the correction of gravity on nodes with scaled mass.
 NodalVectors EnergyLedgerKeeper::external_forces(double time, const NodalVectors& u)
 {
   NodalVectors forces(u.size());
@@ -115,9 +117,9 @@ NodalVectors EnergyLedgerKeeper::external_forces(double time, const NodalVectors
   return forces;
 }
 
-// The account ends at the time of the velocities, half a step before the displacements. The work of that half step is
-// that of the present forces. Nodes that do not follow the forces keep their velocity: constraints do the opposite
-// work.
+// Adds the work of the latest half step: the account ends at the time of the velocities, which is half a step before
+// that of the displacements. The present forces act during this half step. Nodes that bones or prescribed paths drive
+// keep their velocity, so that constraints do the opposite of the forces' work there.
 void EnergyLedgerKeeper::add_latest_half_step(double time, double dt)
 {
   NodalVectors u, v, internal;
@@ -142,7 +144,7 @@ void EnergyLedgerKeeper::add_latest_half_step(double time, double dt)
       kinetic += 0.5 * mass * v[n][axis] * (driven_[n][axis] ? v[n][axis] : next);
       const double pull = weighs ? model_.gravity[axis] : 0;
       gravity += weight * pull * u[n][axis];
-      // surface loads alone, without the correction for mass scaling
+      // Force of surface loads alone, without the correction for mass scaling.
       const double force = external[n][axis] - weight * pull + mass * conditions_.gravity[axis];
       load += 0.5 * dt * force * v[n][axis];
       constraint += driven_[n][axis] ? 0.5 * mass * v[n][axis] * (v[n][axis] - next) : 0;

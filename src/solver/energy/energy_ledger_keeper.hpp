@@ -6,20 +6,20 @@
 namespace frontalis
 {
 
-/// An open ledger that has all its terms, with values 0.
+/// A ledger with all its terms, which have the value 0.
 EnergyLedger empty_ledger();
 
 /// Keeps the energy ledger of a backend's motion: present stored energies, and the work that the backend recorded.
 class EnergyLedgerKeeper
 {
 public:
-  /// All arguments must outlive the keeper.
+  /// All arguments must outlive this object.
   EnergyLedgerKeeper(const Model& model, const Discretisation& discretisation, const Conditions& conditions,
                      StepBackend& backend);
 
   /// Starts a new ledger at the present state.
   void open(double time, double dt);
-  /// `dt` [s]: length of the latest step, or of the next if there was none.
+  /// Finds the present energies. `dt` [s]: length of the latest step, or of the next one if no step has been made.
   EnergyLedger balance(double time, double dt);
   void effects_switched() { loads_.run(conditions_.running); }
   void list_arrays(ArrayList& list) { loads_.list_arrays(list); }

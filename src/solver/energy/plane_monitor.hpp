@@ -19,7 +19,8 @@ struct PlaneMonitor
     return { 0, readings.internal, readings.hourglass, readings.jacobian, readings.jacobian <= 0 ? 1 : 0, voxel };
   }
 
-  /// Adds a part. Add parts in the order of their voxels; values that are not finite count as the worst.
+  /// Adds another part. Parts must be added in the order of their voxels. Values that are not finite count as the
+  /// worst.
   FRONTALIS_LAW void add(const PlaneMonitor& part)
   {
     kinetic += part.kinetic;

@@ -18,14 +18,14 @@ namespace frontalis
 namespace
 {
 
-// Allowed ratio of the latest step to the critical one. It may exceed 1, because the controller renews its bound only
-// every few dozen steps, and the bound is conservative.
+// Allowed ratio of the latest step to the critical one. It exceeds 1, because the controller renews its bound only
+// every few dozen steps, and because the bound is conservative.
 constexpr double step_share_allowed = 1.1;
-// Allowed change of the ledger's imbalance between two checks, over its largest term. In stable random scenes the
-// imbalance is below 0.1 of it (test/study/property_test.cpp).
+// Allowed change of the ledger's imbalance between two checks, as a fraction of the ledger's largest term. In stable
+// random scenes the change is below 0.1 of that term (test/study/property_test.cpp).
 constexpr double imbalance_allowed = 0.2;
-// A voxel with a J below `crushed` is reported as the origin of the instability. So is the stiffest voxel if the
-// critical step falls below the fraction `stiffened` of the last good state's.
+// A voxel is reported as the origin of the instability if its J is below `crushed`, or if it is the stiffest one and
+// the critical step has fallen below the fraction `stiffened` of that of the last good state.
 constexpr double crushed = 0.2;
 constexpr double stiffened = 0.5;
 
@@ -43,7 +43,7 @@ struct Guard::Implementation
     std::vector<RigidTransform> bone;
     std::vector<float> since;  // largest activation of each muscle since the previous good state
     double largest_internal = 0;
-    bool there = false;  // false: there is no such state, and the snapshot is only memory for reuse
+    bool there = false;  // false: no state is stored, and the snapshot is only memory for reuse
   };
 
   Solver& solver;
@@ -54,7 +54,7 @@ struct Guard::Implementation
   std::vector<float> activation;  // largest activation of each muscle since `good`
   std::vector<double> bone_way;   // length of each bone's path since `good` [m]
   std::int64_t checked_at = 0;    // solver steps at the latest check
-  int good_checks = 0;            // since the latest rollback
+  int good_checks = 0;            // number of checks without a finding since the latest rollback
   int tries = 0;
   bool settling = false;
   GuardCounts counts;
@@ -125,7 +125,7 @@ Instability Guard::Implementation::check()
   return finding;
 }
 
-// Runs a part of a motion. Returns the finding of its check, or that the motion diverged.
+// Runs a part of a motion and its check. Returns the check's finding, or that the motion has diverged.
 template <class Part>
 Instability attempted(const Part& part)
 {
@@ -215,7 +215,8 @@ InstabilityReport Guard::Implementation::examined(Instability finding, const Con
         break;
     }
   }
-  // the voxel that is crushed or not finite; if there is none, the stiffest, because that is the most stretched one
+  // Chooses the voxel that is crushed or not finite; if there is none, the stiffest, because it is the most stretched
+  // one.
   std::int32_t voxel =
       !(worst.worst_jacobian >= crushed) || worst.stiffest_voxel < 0 ? worst.worst_voxel : worst.stiffest_voxel;
   if (finding == Instability::past_rim)
@@ -311,7 +312,7 @@ Equilibrium Guard::settle(const Controls& target, double tolerance, double secon
   Equilibrium result;
   for (Instability finding = Instability::time_step; finding != Instability::none;)
   {
-    // in settle(), muscles respond to the target without delay
+    // In settle(), muscles respond to the target without delay.
     for (std::size_t m = 0; m < target.activation.size(); ++m)
       g.activation[m] = std::max(g.activation[m], target.activation[m]);
     for (std::size_t b = 0; b < target.bone.size(); ++b)

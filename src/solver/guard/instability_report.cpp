@@ -9,7 +9,7 @@ namespace frontalis
 namespace
 {
 
-// indices of the entries whose weight is above 0, by descending weight
+// Indices of the entries with a positive weight, by descending weight.
 template <class Weight>
 std::vector<std::int32_t> by_weight(std::int32_t begin, std::int32_t end, const Weight& weight)
 {

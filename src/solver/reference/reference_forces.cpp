@@ -10,7 +10,7 @@ namespace frontalis
 namespace
 {
 
-// A voxel and its viscous stresses, which the solver stores.
+// A voxel with access to its viscous stresses, which the solver stores.
 struct ViscousVoxel : ModelVoxel
 {
   std::array<physics::Symmetric3<double>, 2>& stresses;
@@ -23,7 +23,7 @@ struct ViscousVoxel : ModelVoxel
   physics::Symmetric3<double> relaxed(int n) const { return stresses[n]; }
   void keep_relaxed(int n, const physics::Symmetric3<double>& H) const
   {
-    // tensor 2 is the sum of the others, which only other backends store
+    // Tensor 2, the sum of the other two, is stored by other backends only.
     if (n < 2)
       stresses[n] = H;
   }
@@ -31,7 +31,7 @@ struct ViscousVoxel : ModelVoxel
 
 }  // namespace
 
-// N_b = (1 + xi xi_b)(1 + eta eta_b)(1 + zeta zeta_b) / 8, dxi/dX = 2/h
+// N_b = (1 + xi xi_b)(1 + eta eta_b)(1 + zeta zeta_b) / 8, with dxi/dX = 2/h.
 void ReferenceSolver::shape_derivatives(const double (&at)[3], Derivatives& out) const
 {
   for (int b = 0; b < 8; ++b)
@@ -93,7 +93,7 @@ void ReferenceSolver::add_stress(std::size_t e, const Stress& P, const Derivativ
 
 void ReferenceSolver::add_hourglass(std::size_t e, const Components& u, const Kinematics& k, const Derivatives& centre)
 {
-  // Transformed displacements of the hourglass modes, and the forces conjugate to them.
+  // Indices of the hourglass modes among the transformed displacements.
   static constexpr int mode_of_shape[4] = { 3, 5, 6, 7 };
   const auto& nodes = model_->voxel_nodes[e];
   double mode[3][8] = {};

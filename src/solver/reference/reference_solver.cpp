@@ -88,7 +88,7 @@ Work ReferenceSolver::work(bool open)
 {
   if (open)
     account_->open();
-  // makes forces() record the work of fibres in the latest step
+  // With this flag, forces() records the work of fibres in the latest step.
   accounting_ = true;
   forces(u_, conditions_.activation);
   if (open)

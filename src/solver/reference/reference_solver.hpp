@@ -8,8 +8,9 @@ namespace frontalis
 
 struct ModelVoxel;
 
-/// The reference for the other backends, in double precision and plain loops. It takes the kinematics from textbook
-/// shape-function derivatives, not from the Walsh-Hadamard transform, so that an error in the transform is found.
+/// The reference for the other backends: double precision and plain loops. The kinematics come from textbook
+/// derivatives of shape functions rather than from the Walsh-Hadamard transform, so that tests detect an error in the
+/// transform.
 class ReferenceSolver : public HostBackend<double, std::array<physics::Symmetric3<double>, 2>>
 {
 public:
@@ -37,7 +38,7 @@ private:
   void add_element(std::size_t e, const Components& u, const std::vector<float>& activation);
   void forces(const Components& u, const std::vector<float>& activation);
   void mix_voxels();
-  void relax(double elapsed, const Components& u_before);  // u_before: one step earlier
+  void relax(double elapsed, const Components& u_before);  // u_before: displacements one step earlier
 
   std::vector<VoxelProperties> voxels_;
   Components f_;

@@ -6,8 +6,8 @@
 namespace frontalis
 {
 
-/// Adds the energy of shells at displacements `u` of nodes to the ledger, and their forces on nodes [N] to `forces` if
-/// that is not empty.
+/// Adds the energy of shells at displacements `u` of nodes to the ledger. Also adds their forces on nodes [N] to
+/// `forces`, unless that is empty.
 template <class Real>
 void add_shell_energies(const Model& model, const ShellMesh& mesh, const Real* const u[3],
                         std::vector<std::array<double, 3>>& forces, EnergyLedger& ledger);

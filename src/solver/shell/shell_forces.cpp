@@ -11,7 +11,7 @@ namespace frontalis
 namespace
 {
 
-// Writes a triangle's numbers to a lane; a triangle of an empty lane has no stiffness.
+// Writes a triangle's values to a lane. A lane that is to be empty gets a triangle without stiffness.
 template <class Real>
 void set_lane(ShellBlock<Real>& block, std::size_t lane, const ShellMesh::Triangle& triangle, bool empty)
 {
@@ -38,7 +38,7 @@ void set_lane(ShellBlock<Real>& block, std::size_t lane, const ShellMesh::Triang
   }
 }
 
-// The thread's share of things to do.
+// The thread's part of `count` items.
 std::pair<std::int32_t, std::int32_t> share_of(std::size_t count, const NodeShare& share)
 {
   return { static_cast<std::int32_t>(count * share.thread / share.threads),
@@ -150,7 +150,7 @@ void ShellForces<Real>::add_forces(const NodeShare& share, const ForceSink<Real>
   { return static_cast<std::int32_t>(std::lower_bound(nodes_.begin(), nodes_.end(), node) - nodes_.begin()); };
   const auto begin = place(share.first_node), end = place(share.end_node);
   kernels_.sum(on_node_, work.on_vertex.data(), work.on_node.data(), begin, end);
-  const ForceSink<Real> to = sink;  // so that the compiler keeps its members in registers
+  const ForceSink<Real> to = sink;  // a copy, so that the compiler keeps its members in registers
   for (auto n = begin; n < end; ++n)
   {
     const auto& force = work.on_node[n].x;

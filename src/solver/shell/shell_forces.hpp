@@ -10,10 +10,10 @@
 namespace frontalis
 {
 
-/// Forces of layers that are shells, on the nodes of the voxels that carry their vertices. Threads first place the
-/// vertices: prepare_step(), then find the forces of their part of the triangles: before_step(). In add_forces() each
-/// adds up those on the vertices in its voxels, and passes them on to the nodes of its planes through the transposed
-/// binding, both in a fixed order.
+/// Forces of layers that are shells on the nodes of the voxels that carry their vertices. In prepare_step() threads
+/// find the displacements of the vertices, in before_step() each finds the forces of its part of the triangles. In
+/// add_forces() each thread adds up the forces on the vertices in its voxels, and passes them on to the nodes of its
+/// planes through the transposed binding, both in a fixed order.
 template <class Real>
 class ShellForces : public NodePart<Real>
 {
@@ -36,7 +36,7 @@ private:
   using Block = ShellBlock<Real>;
   using Sums = WeightedSums<Real>;
   using Vectors = std::vector<ShellVector<Real>>;
-  // of a thread: forces on vertices and on nodes [N]
+  // Forces on vertices and on nodes that one thread adds up [N].
   struct Work
   {
     Vectors on_vertex, on_node;
@@ -49,13 +49,14 @@ private:
   ShellKernels<Real> kernels_;
   bool runs_ = true;
   std::vector<Block> blocks_;
-  std::vector<std::int32_t> plane_vertices_;  // first vertex in each plane of voxels, and their number
-  std::vector<std::int32_t> nodes_;           // that carry vertices, ascending
-  Sums place_;                                // displacements of vertices, of those of nodes
-  Sums on_vertex_;                            // forces on vertices, of those of triangles
-  Sums on_node_;                              // forces on nodes_, of those on vertices
-  // of the step under way
-  Vectors u_;               // of vertices [m]
+  // first vertex in each plane of voxels; the last entry is the number of vertices
+  std::vector<std::int32_t> plane_vertices_;
+  std::vector<std::int32_t> nodes_;  // nodes that carry vertices, ascending
+  Sums place_;                       // displacements of vertices from those of nodes
+  Sums on_vertex_;                   // forces on vertices from those of triangles
+  Sums on_node_;                     // forces on nodes_ from those on vertices
+  // Values of the present step:
+  Vectors u_;               // displacements of vertices [m]
   Vectors forces_;          // see ShellKernels [N]
   std::vector<Work> work_;  // one per thread
 };

@@ -18,8 +18,8 @@ namespace
 using Vector = physics::Vec3<double>;
 using Matrix = std::array<std::array<double, 3>, 3>;
 
-// Squared share of the size of T below which its singular values count for less; those of an equilateral triangle are
-// 0.7, 0.7 and 1.
+// Fraction of the squared size of T below which squared singular values are damped. In an equilateral triangle the
+// singular values are 0.7, 0.7 and 1.
 constexpr double regularisation = 4e-4;
 
 Matrix product(const Matrix& a, const Matrix& b)
@@ -96,8 +96,8 @@ ShellMesh::Triangle shell_triangle(const std::array<Vector, 6>& x, const std::ar
   const double volume = 0.5 * area_twice * thickness;
   rest.shear = volume * young / (2 * (1 + poisson));
   rest.dilatation = volume * young * poisson / (1 - poisson * poisson);
-  // The energy is at most (shear + dilatation) |grad u|^2. |grad u|^2 is a quadratic form of rank 2 in the corners'
-  // displacements, with this trace and this product of eigenvalues.
+  // The membrane energy is at most (shear + dilatation) |grad u|^2. The term |grad u|^2 is a quadratic form of rank 2
+  // in the corners' displacements; `trace` and `eigenvalues` are the sum and the product of its two eigenvalues.
   const double trace = 2 * (rest.metric[0] + rest.metric[1] + rest.metric[2]), eigenvalues = 3 * per_area;
   out.membrane = (rest.shear + rest.dilatation) * (trace + std::sqrt(std::max(0.0, trace * trace - 4 * eigenvalues)));
 
@@ -111,7 +111,7 @@ ShellMesh::Triangle shell_triangle(const std::array<Vector, 6>& x, const std::ar
   const Vector corner[3] = { { 0, 0, 0 }, a, b };
   rest.from_corner[0] = a;
   rest.from_corner[1] = b;
-  Matrix T, share;  // share: of the corners in the plane's height below an outer vertex
+  Matrix T, share;  // share: weights of the corners in the height of the triangle's plane at an outer vertex
   for (std::size_t i = 0; i < 3; ++i)
   {
     const Vector &p = corner[(i + 1) % 3], &q = corner[(i + 2) % 3];
@@ -129,7 +129,8 @@ ShellMesh::Triangle shell_triangle(const std::array<Vector, 6>& x, const std::ar
   Matrix squared = product(transposed(T), T);
   for (std::size_t k = 0; k < 3; ++k)
     squared[k][k] += regularisation;
-  const Matrix curvature = product(inverse(squared), transposed(T));  // of heights over twice the area
+  // matrix that converts heights to curvatures times twice the area
+  const Matrix curvature = product(inverse(squared), transposed(T));
   const double plate = young * std::pow(thickness, 3) / (12 * (1 - poisson * poisson));
   const double scale = 0.5 * plate / area_twice;
   const Matrix law{
@@ -139,7 +140,7 @@ ShellMesh::Triangle shell_triangle(const std::array<Vector, 6>& x, const std::ar
   for (std::size_t i = 0; i < 3; ++i)
     if (!beyond[i])
     {
-      // the height that leaves no moment at this edge
+      // The height beyond this edge is eliminated by the condition that no moment passes through the edge.
       const Matrix before = M;
       for (std::size_t j = 0; j < 3; ++j)
         for (std::size_t k = 0; k < 3; ++k)
@@ -161,7 +162,7 @@ ShellMesh::ShellMesh(const Model& model)
 {
   for (const Shell& shell : model.shells)
     add(model, shell);
-  // near in memory what is near in the grid
+  // Vertices are sorted by voxel, so that neighbours in the grid are close to each other in memory.
   std::vector<std::int32_t> order(binding.voxel.size()), rank(order.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return binding.voxel[a] < binding.voxel[b]; });
@@ -185,7 +186,7 @@ void ShellMesh::add(const Model& model, const Shell& shell)
   binding.voxel.insert(binding.voxel.end(), shell.binding.voxel.begin(), shell.binding.voxel.end());
   binding.coordinates.insert(binding.coordinates.end(), shell.binding.coordinates.begin(),
                              shell.binding.coordinates.end());
-  // the corner opposite to each directed edge
+  // For each directed edge, the corner opposite to it.
   std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> opposite;
   for (const auto& t : shell.surface.triangles)
     for (std::size_t i = 0; i < 3; ++i)

@@ -8,16 +8,17 @@ namespace frontalis
 
 class Discretisation;
 
-/// Stiffness of layers that are shells, and what it adds to the bound of the highest frequency.
+/// Stiffness of layers that are shells, and its contribution to the bound of the highest frequency.
 class ShellStiffness : public AddedStiffness
 {
 public:
-  /// `discretisation`: with bounds of the voxels' stiffness that do not include the shells.
+  /// `discretisation`: its bounds of the voxels' stiffness must not include the shells yet.
   ShellStiffness(const Model& model, const Discretisation& discretisation);
 
   double in_voxel(std::size_t voxel) const override { return double(voxels_[voxel]); }
-  /// Each triangle has an equal stiffness against all gradients of displacement, that of its stiffest, and each of its
-  /// vertices one against displacements, which exceeds that of bending.
+  /// Adds the forces of an upper bound of the shells' stiffness. Each triangle has the stiffness of its stiffest
+  /// direction in all directions; in addition, each of its vertices has a spring that is stiffer than the triangle in
+  /// bending.
   void add_forces(const Model& model, const std::vector<std::array<double, 3>>& displacements,
                   std::vector<std::array<double, 3>>& forces) const override;
 

@@ -25,7 +25,7 @@ std::array<double, 3> bound_displacement(const Model& model, const Binding& bind
   return sum;
 }
 
-/// Area-weighted normals at the vertices: the cross product is twice the area.
+/// Sets the normals at the vertices to area-weighted means; the cross product of two edges is twice a triangle's area.
 inline void surface_normals(const std::vector<std::array<std::int32_t, 3>>& triangles,
                             const std::vector<std::array<float, 3>>& vertices,
                             std::vector<std::array<float, 3>>& normals)

@@ -7,22 +7,22 @@
 namespace frontalis
 {
 
-/// Means of values at the vertices of a surface over cells of a lattice in space: each vertex belongs to the eight
-/// corners of its cell by trilinear weights, so that means change smoothly along the surface.
+/// Means of values at the vertices of a surface over the cells of a lattice in space. Each vertex contributes to the
+/// eight corners of its cell with trilinear weights, so that means change smoothly along the surface.
 class CellMeans
 {
 public:
   using Field = std::vector<float>;
 
-  /// Cells have edges of this length [m].
+  /// `edge`: length of a cell's edges [m].
   CellMeans(const std::vector<std::array<double, 3>>& points, double edge);
 
-  /// Numbers of the vertices in the order of their cells: neighbours are near each other. Vertices are counted so
-  /// below.
+  /// Indices of the vertices in the order of their cells, in which neighbours are close to each other. Vertices are
+  /// numbered in this order below.
   const std::vector<std::int32_t>& order() const { return order_; }
-  /// Sets the area of each vertex, before all that follows.
+  /// Sets the area of each vertex. Call it before the following functions.
   void set_areas(const Field& area);
-  /// Area at each corner.
+  /// Area that belongs to each corner.
   const Field& areas() const { return area_; }
 
   void add(Field& sums, std::size_t vertex, float value) const
@@ -30,7 +30,7 @@ public:
     for (std::size_t c = 0; c < 8; ++c)
       sums[corner_[vertex][c]] += weight_[vertex][c] * value;
   }
-  /// Turns sums of values times area into means.
+  /// Converts sums of values times area to means.
   void divide_by_area(Field& sums) const;
   float at(const Field& means, std::size_t vertex) const
   {

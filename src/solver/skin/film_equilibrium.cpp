@@ -15,14 +15,14 @@ using Vector = physics::Vec3<double>;
 
 constexpr double pi = 3.14159265358979323846;
 
-// edges longer than this part of the wavelength do not resolve it
+// Edges longer than this fraction of the wavelength do not resolve it.
 constexpr double longest_edge = 1.0 / 3;
-// Heights are computed where the film's largest compression is at least this part of the critical one.
+// Heights are computed where the film's largest compression is at least this fraction of the critical one.
 constexpr double near_critical = 0.5;
 constexpr int most_iterations = 40;
-// the solution is found if an iteration lowers the energy by less than this part of it
+// The solution is found if an iteration lowers the energy by less than this fraction.
 constexpr double tolerance = 3e-4;
-constexpr double seed_height = 0.05;  // root mean square, over the film's thickness
+constexpr double seed_height = 0.05;  // root mean square of the initial heights, divided by the film's thickness
 
 template <class Number>
 Vector vector_of(const std::array<Number, 3>& p)
@@ -57,7 +57,7 @@ double inner(const std::vector<std::int32_t>& active, const std::vector<float>& 
   return sum;
 }
 
-// The positive x at which slope + x curvature + cubic terms first vanish, for slope < 0.
+// Smallest positive x at which slope + curvature x + third x^2 + fourth x^3 vanishes, for slope < 0.
 double first_minimum(double slope, double curvature, double third, double fourth)
 {
   const auto derivative = [&](double x) { return slope + x * (curvature + x * (third + x * fourth)); };
@@ -88,8 +88,9 @@ FilmEquilibrium::FilmEquilibrium(const Model& model)
   make_seed();
 }
 
-// Linear finite elements: the edge opposite to corner c of a triangle has the weight -A grad_a . N . grad_b, where a, b
-// are its ends. The area of a vertex is a third of that of its triangles.
+// Sets the weights of linear finite elements for the operator div N grad with a tensor N: a triangle of area A
+// contributes -A grad_a . N . grad_b to the edge between its corners a and b. The area of a vertex is a third of the
+// area of its triangles.
 void FilmEquilibrium::make_operators()
 {
   const std::size_t count = order_.size();
@@ -116,7 +117,7 @@ void FilmEquilibrium::make_operators()
       const int a = (c + 1) % 3, b = (c + 2) % 3;
       const Vector edge = at[b] - at[a];
       const double size = std::sqrt(dot(edge, edge));
-      // gradients times 2 A are edges turned by a right angle
+      // A gradient times twice the area is an edge turned by a right angle.
       const Tensor weight =
           product((1 / twice) * cross(normal, at[c] - at[b]), (1 / twice) * cross(normal, at[a] - at[c]), -0.5 / twice);
       for (const auto& [from, to] : { std::pair{ t[a], t[b] }, std::pair{ t[b], t[a] } })
@@ -149,8 +150,8 @@ void FilmEquilibrium::make_operators()
   cells_.set_areas(area_);
 }
 
-// Green-Lagrange strain, as means over cells. The gradient of positions is linear in triangles, so that the integral of
-// F^T F is the sum over edges of their squared lengths times the same tensors.
+// Finds the Green-Lagrange strain as means over cells. The gradient of positions is constant in a triangle, so that the
+// integral of F^T F is a sum over edges of squared lengths times the tensors edge_.
 void FilmEquilibrium::find_strain(const std::vector<std::array<float, 3>>& vertices)
 {
   const auto squared = [](const auto& a, const auto& b)
@@ -167,7 +168,7 @@ void FilmEquilibrium::find_strain(const std::vector<std::array<float, 3>>& verti
     for (std::int32_t s = begin_[v]; s < begin_[v + 1]; ++s)
     {
       const std::int32_t to = order_[neighbour_[s]];
-      // half of the edge belongs to each of its ends
+      // Each end of an edge gets half of its contribution.
       const auto change = static_cast<float>(
           0.25 * k_ * k_ *
           (squared(vertices[from], vertices[to]) - squared(model_.skin.vertices[from], model_.skin.vertices[to])));
@@ -185,9 +186,9 @@ void FilmEquilibrium::find_strain(const std::vector<std::array<float, 3>>& verti
   }
 }
 
-// Finds the vertices whose heights are to be found, and the forces of the film on their edges, and sets lines off where
-// there are none or where they are no numbers. In units of the film, a compression by the critical strain is a force of
-// 3 per length.
+// Finds the vertices where the film may have lines and the membrane forces on the edges there. Starts lines from the
+// seed where heights are too small to grow or not finite. In units of the film, a compression by the critical strain is
+// a force of 3 per length.
 void FilmEquilibrium::find_active(Field& w)
 {
   const auto poisson = static_cast<float>(model_.film.poisson), stretch = static_cast<float>(model_.film.stretch);
@@ -195,7 +196,7 @@ void FilmEquilibrium::find_active(Field& w)
   std::vector<float> sums(strain_.size());
   for (std::size_t v = 0; v < strain_.size(); ++v)
   {
-    // principal values of a tensor in a plane, by its invariants
+    // Principal values of a tensor in a plane, from its invariants.
     const float sum = trace(strain_[v]), half = 0.5F * sum;
     const float least = half - std::sqrt(std::max(0.5F * contract(strain_[v], strain_[v]) - half * half, 0.0F));
     const float compression = -((1 - poisson) * least + poisson * sum + (1 + poisson) * stretch);
@@ -220,8 +221,8 @@ void FilmEquilibrium::find_active(Field& w)
     }
 }
 
-// Sums over neighbours: `out` is minus the Laplacian of w times the area of each vertex, and `forced`, if it is not
-// null, minus the divergence of the film's force times grad w, times area.
+// Sums over neighbours: `out` is minus the Laplacian of w, times the area of each vertex. `forced`, if it is not null,
+// is minus the divergence of the film's membrane force times grad w, times the area.
 void FilmEquilibrium::apply(const Field& w, Field& out, Field* forced) const
 {
   for (const std::int32_t v : active_)
@@ -239,8 +240,8 @@ void FilmEquilibrium::apply(const Field& w, Field& out, Field* forced) const
   }
 }
 
-// Means of grad u . grad v at the corners of cells. By parts they are those of -(u laplace v + v laplace u) / 2, since
-// weights of cells change slowly.
+// Means of grad u . grad v at the corners of cells. Integration by parts gives the means of -(u laplace v + v laplace
+// u) / 2, because the weights of cells change slowly.
 void FilmEquilibrium::mean_products(const Wave& u, const Wave& v, Field& out) const
 {
   out.assign(cells_.areas().size(), 0);
@@ -261,7 +262,7 @@ double FilmEquilibrium::quadratic(const Wave& u) const
   return sum;
 }
 
-// The derivative of the energy by the heights. `relief` is the mean of |grad w|^2.
+// The derivative of the energy with respect to the heights. `relief` is the mean of |grad w|^2.
 void FilmEquilibrium::gradient(const Wave& u, const Field& relief, Field& out)
 {
   for (const std::int32_t v : active_)
@@ -276,8 +277,9 @@ void FilmEquilibrium::gradient(const Wave& u, const Field& relief, Field& out)
     out[v] += local_[v];
 }
 
-// The sum of plane waves of the film's wavelength in many directions of space, from which lines grow: on a surface most
-// of them are nearly that long. It depends on the place alone, so that lines come back where they were.
+// Makes the seed from which lines grow: the sum of plane waves in many directions of space, with the film's wavelength.
+// On a surface most of these waves have nearly that length. The seed depends on the position alone, so that lines
+// return to the same places.
 void FilmEquilibrium::make_seed()
 {
   constexpr int waves = 64;
@@ -287,7 +289,7 @@ void FilmEquilibrium::make_seed()
     double sum = 0;
     for (int i = 0; i < waves; ++i)
     {
-      // points spread over a sphere
+      // The directions of the waves are spread evenly over a sphere.
       const double z = 1 - (2 * i + 1.0) / waves, turn = pi * (3 - std::sqrt(5.0)) * i, r = std::sqrt(1 - z * z);
       sum += std::cos(k_ * (r * std::cos(turn) * at.x + r * std::sin(turn) * at.y + z * at.z) + i * i);
     }
@@ -311,7 +313,8 @@ void FilmEquilibrium::precondition(Field& inverse) const
   }
 }
 
-// Conjugate gradients (Polak & Ribiere) with exact line search: along a line the energy is a polynomial of degree four.
+// Conjugate gradients (Polak & Ribiere) with exact line search, since the energy along a line is a polynomial of degree
+// four.
 int FilmEquilibrium::solve(const std::vector<std::array<float, 3>>& vertices, std::vector<float>& height)
 {
   const std::size_t count = order_.size();

@@ -15,7 +15,7 @@
 namespace frontalis
 {
 
-// processor time of the calling thread [s]
+// Processor time of the calling thread [s].
 static double thread_seconds()
 {
   timespec now{};
@@ -30,16 +30,16 @@ struct FineLines::Implementation
   std::shared_ptr<const Model> model;
   FilmEquilibrium film;
   std::atomic<double> seconds{ 0 };
-  std::vector<float> found;  // heights; used by the thread, or without one by add_to()
+  std::vector<float> found;  // heights; used by the separate thread, or by add_to() if there is none
 
-  // shared with the thread and protected by the mutex
+  // The following members are shared with the thread and protected by the mutex.
   std::mutex mutex;
-  std::condition_variable wake;  // there is something to find, or it has been found
+  std::condition_variable wake;  // signals new vertices to the thread, and finished heights to its caller
   Vertices next;                 // vertices to find heights for; empty: none
-  std::vector<float> height;     // the latest ones
+  std::vector<float> height;     // the latest heights
   bool stop = false;
   bool busy = false;     // the thread is finding heights
-  bool discard = false;  // what it is finding is of no use
+  bool discard = false;  // the heights that the thread is finding are not wanted any more
   std::thread thread;
 
   explicit Implementation(std::shared_ptr<const Model> of)
@@ -77,7 +77,7 @@ struct FineLines::Implementation
     }
   }
 
-  // Positions and normals of the vertices that halve edges, from those of the carried ones.
+  // Finds positions and normals of the vertices that halve edges, from those of the vertices that voxels carry.
   void place(SkinState& skin) const
   {
     using Vector = physics::Vec3<float>;

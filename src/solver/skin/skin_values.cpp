@@ -19,7 +19,7 @@ namespace
 using physics::Kinematics;
 using physics::Matrix3;
 
-// E = (F^T F - 1) / 2
+// Largest eigenvalue of the Green-Lagrange strain E = (F^T F - 1) / 2.
 double principal_strain(const Kinematics<double>& k)
 {
   Matrix3<double> E;
@@ -34,7 +34,7 @@ double principal_strain(const Kinematics<double>& k)
   return *std::max_element(eigen.value, eigen.value + 3);
 }
 
-// Von Mises stress of the Cauchy stress P F^T / J. The divisor has a lower limit.
+// Von Mises stress of the Cauchy stress P F^T / J, whose divisor has a lower limit.
 double von_mises(const Matrix3<double>& P, const Kinematics<double>& k)
 {
   double s[3][3] = {};
@@ -129,7 +129,7 @@ void SkinValues::compute(SkinField field, const std::vector<std::array<double, 3
   out.resize(binding.voxel.size());
   for (std::size_t p = 0; p < out.size(); ++p)
   {
-    // a vertex outside its voxel takes the value at the voxel's face
+    // A vertex outside its voxel gets the value at the nearest point of the voxel.
     const auto inside = [](float x) { return std::clamp(static_cast<double>(x), 0.0, 1.0); };
     const auto& c = binding.coordinates[p];
     double weight[8];

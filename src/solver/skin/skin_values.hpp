@@ -10,12 +10,12 @@
 namespace frontalis
 {
 
-/// Strain or stress at the skin's vertices: means at nodes over the surrounding voxels, weighted by tissue, then
-/// interpolated within the voxel to which a vertex is bound.
+/// Strain or stress at the skin's vertices. Values at nodes are means over the surrounding voxels, weighted by tissue;
+/// those at vertices are interpolated within the voxel to which a vertex is bound.
 class SkinValues
 {
 public:
-  /// Both arguments must outlive it.
+  /// Both arguments must outlive this object.
   SkinValues(const Model& model, const Discretisation& discretisation);
 
   /// `u`: displacements of all nodes [m]; `activation`: that of the fibres.
@@ -28,7 +28,7 @@ private:
   const Discretisation& discretisation_;
   std::vector<std::int32_t> nodes_;                  // nodes of the voxels to which vertices are bound, ascending
   std::vector<std::int32_t> voxels_;                 // voxels with one of these nodes, ascending
-  std::vector<std::array<std::int32_t, 8>> corner_;  // per voxel: index into nodes_ of each corner, -1 if not there
+  std::vector<std::array<std::int32_t, 8>> corner_;  // index of each voxel's corners into nodes_; -1: not in nodes_
   std::vector<double> sum_, weight_;                 // one per node
 };
 

@@ -8,8 +8,8 @@
 namespace frontalis
 {
 
-/// The arrays of a solver that are not empty, each with the effect that it serves and whether it is state of the
-/// motion; all other values are constant or computed in each step. Solver::allocations() and snapshots both use this
+/// The arrays of a solver that are not empty, each with the effect that it serves and whether it belongs to the state
+/// of the motion; other arrays are constant or computed in each step. Solver::allocations() and snapshots both use this
 /// list. Arrays that every model has, whatever its effects, are attributed to elasticity.
 class ArrayList
 {
@@ -35,7 +35,7 @@ public:
   {
     add(Effect::elasticity, what, array);
   }
-  /// Adds an array of the state. Its number of entries must not change while the solver lives.
+  /// Adds an array of the state. Its number of entries must not change during the solver's lifetime.
   template <class T>
   void add_state(Effect effect, const std::string& what, std::vector<T>& array)
   {
@@ -75,8 +75,8 @@ class EffectPart
 public:
   virtual ~EffectPart() = default;
   virtual void list_arrays(ArrayList& list) = 0;
-  /// Follows a change of the running effects. An effect that is switched off is set to its state at rest, so that it
-  /// starts without a history when it is switched on again.
+  /// Adapts the part to a change of the running effects. An effect that is switched off is set to its state at rest, so
+  /// that it starts without a history when it is switched on again.
   virtual void run(EffectSet running) = 0;
   /// Sets the effect's state to that at rest.
   virtual void reset() = 0;

@@ -8,14 +8,19 @@ namespace frontalis
 namespace
 {
 
-// Margins are needed: power iteration finds too low an eigenvalue, and the model may stiffen until the next search.
-constexpr double margin = 1.05;               // factor on the squared frequency
-constexpr double margin_after_change = 1.25;  // the same in the first search, and after recent changes of activation
-constexpr std::int64_t longest_valid = 2000;  // steps; a search costs about 1 % of 2000 steps
-constexpr std::int64_t shortest_valid = 200;  // steps after a change of activation; doubled by each search
-constexpr float activation_allowed = 0.1F;    // change of a muscle's activation since the search
-constexpr double growth_allowed = 1.02;       // of the squared frequency bound at nodes since the search
-// A search starts from the mode of the previous one; the first search, from random numbers, needs more iterations.
+// Margins are needed, because power iteration gives too low an eigenvalue, and the model may stiffen until the next
+// search.
+constexpr double margin = 1.05;  // factor on the squared frequency
+// the same factor in the first search and after recent changes of activation
+constexpr double margin_after_change = 1.25;
+// steps for which a search is valid at most; a search costs about 1 % of 2000 steps
+constexpr std::int64_t longest_valid = 2000;
+// steps for which a search is valid after a change of activation; each further search doubles them
+constexpr std::int64_t shortest_valid = 200;
+constexpr float activation_allowed = 0.1F;  // change of a muscle's activation since the search
+constexpr double growth_allowed = 1.02;     // allowed growth of the squared frequency bound at nodes since the search
+// A search starts from the mode of the previous one. The first search starts from random numbers and needs more
+// iterations.
 constexpr int iterations = 16;
 constexpr int first_iterations = 300;
 
@@ -29,7 +34,7 @@ double AssembledEstimate::frequency_squared(double bound) const
 void AssembledEstimate::renew(const std::vector<float>& activation, const std::vector<float>& asked, double bound,
                               const std::function<double(int)>& search)
 {
-  // Fibres stiffen as they are activated, and the tissue that they move stiffens later. Until then the bound at nodes
+  // Fibres stiffen as they are activated, and the tissue that they pull stiffens later. Until then the bound at nodes
   // is used.
   bool changed = false;
   activation_.resize(asked.size());

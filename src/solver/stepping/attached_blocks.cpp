@@ -52,8 +52,8 @@ bool AttachedBlocks<Real>::add_group(const AttachedNode* begin, const AttachedNo
 template <class Real>
 void AttachedBlocks<Real>::finish()
 {
-  // Groups arrive in the order of their masters. Those of neighbouring masters are sorted by kind and size, so that few
-  // lanes of rows stay empty while the nodes of a block stay close to each other in memory.
+  // Groups arrive in the order of their masters. Within each series of neighbouring masters they are sorted by kind and
+  // size, so that few lanes of rows are unused while the nodes of a block stay close to each other in memory.
   constexpr std::size_t neighbours = 128 * attach_width;
   const auto key = [](const Group& group)
   {
@@ -155,7 +155,7 @@ void AttachedBlocks<Real>::list_arrays(ArrayList& list)
   list.add_state(Effect::attachment, "attached nodes", levels_);
 }
 
-// Threads get equal numbers of rows.
+// First block of a thread. Each thread gets about the same number of rows.
 template <class Real>
 std::int32_t AttachedBlocks<Real>::first_block(int thread, int threads) const
 {
@@ -179,7 +179,7 @@ void AttachedBlocks<Real>::constrain(const NodeShare& share, Real* const u[3], R
           first_block(share.thread, share.threads), first_block(share.thread + 1, share.threads));
 }
 
-// Where the field ends or its gradient is too short, the old plane stays.
+// Finds a new plane for a lane. Where the field ends or its gradient is too short, the old plane is kept.
 template <class Real>
 void AttachedBlocks<Real>::renew(void* self, Planes& planes, int lane, std::int32_t node, const Real u[3])
 {

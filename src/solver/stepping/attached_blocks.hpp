@@ -10,25 +10,24 @@
 namespace frontalis
 {
 
-/// Position of a node at rest.
 physics::Vec3<double> rest_point(const Model& model, std::int32_t node);
 
-/// Level of an attached node at rest minus `ratio` times its master's [m]; 0 where the field ends.
+/// Level of an attached node at rest minus `ratio` times the level of its master [m]; 0 where the field ends.
 double level_offset(const Model& model, const AttachedNode& node);
 
-/// Groups of a master and attached nodes that are held by what does not move, or slide on one surface that does not
-/// move. Sixteen masters form a block; the nodes that follow them are in rows of sixteen. No node is in two groups, so
-/// that any thread may process any block.
+/// Groups of a master and its attached nodes at surfaces and bones that do not move: the nodes are held, or all of them
+/// slide on one surface. Sixteen masters form a block; the nodes that follow them are stored in rows of sixteen. No
+/// node is in two groups, so that any thread may process any block.
 template <class Real>
 class AttachedBlocks
 {
 public:
   AttachedBlocks(const Model& model, const std::vector<double>& mass, AttachKernel<Real> kernel);
 
-  /// Adds a master and its nodes if it has no prescribed path and they are held, or slide on one surface, without
-  /// moving bones. Returns whether it was added. Add masters in ascending order.
+  /// Adds a master, which must not have a prescribed path, and its nodes. Returns false, and adds nothing, if a bone of
+  /// a node moves or the nodes slide on several surfaces. Masters must be added in ascending order.
   bool add_group(const AttachedNode* begin, const AttachedNode* end);
-  /// Forms the blocks, after the last add_group().
+  /// Forms the blocks. Call it after the last add_group().
   void finish();
 
   bool empty() const { return masters_.empty(); }
@@ -53,7 +52,7 @@ private:
   const std::vector<double>& mass_;
   AttachKernel<Real> kernel_;
   std::vector<physics::DistanceField> fields_;
-  std::vector<Group> groups_;  // until finish()
+  std::vector<Group> groups_;  // used until finish()
   std::vector<MasterBlock<Real>> masters_;
   std::vector<HeldRow<Real>> held_;
   std::vector<LevelRow<Real>> levels_;

@@ -28,7 +28,8 @@ void put(const Point& p, Real* const to[3], std::int32_t n)
   to[2][n] = static_cast<Real>(p.z);
 }
 
-/// Sums over a master and the nodes that follow it. The velocity of the master solves mass * velocity = momentum.
+/// Equation for the velocity of a master, mass * velocity = momentum, with sums over the master and the nodes that
+/// follow it.
 struct Balance
 {
   double mass[3][3] = {};
@@ -46,7 +47,7 @@ struct Balance
     momentum[1] += m * v.y;
     momentum[2] += m * v.z;
   }
-  /// Adds a mass that moves along one direction, with dot(direction, velocity) = speed.
+  /// Adds a mass that is free along one direction only, with dot(direction, velocity) = speed.
   void add(double m, const Point& direction, double speed)
   {
     const double d[3] = { direction.x, direction.y, direction.z };
@@ -67,7 +68,7 @@ struct Balance
     mass[axis][axis] = 1;
     momentum[axis] = velocity;
   }
-  /// Solves by elimination; the matrix is symmetric and positive definite.
+  /// Solves the equation by elimination; the matrix is symmetric and positive definite.
   Point velocity()
   {
     for (int p = 0; p < 3; ++p)
@@ -94,7 +95,7 @@ struct Balance
 template <class Real>
 struct AttachedNodes<Real>::Bones
 {
-  std::vector<physics::Pose> now, before;  // one per bone; the last one stands still
+  std::vector<physics::Pose> now, before;  // one per bone; the last entry is a pose that stands still
   double dt;
 
   explicit Bones(const ConstraintStep& step) : dt(step.dt)
@@ -107,7 +108,7 @@ struct AttachedNodes<Real>::Bones
     before.emplace_back();
   }
   std::size_t index(std::int32_t bone) const { return bone < 0 ? now.size() - 1 : static_cast<std::size_t>(bone); }
-  /// Displacement at the end of the step and velocity of the point of a bone that rests at p.
+  /// Displacement, at the end of the step, and velocity of the point of a bone that rests at p.
   Point displacement(std::int32_t bone, const Point& p) const { return now[index(bone)].outwards(p) - p; }
   Point velocity(std::int32_t bone, const Point& p) const
   {
@@ -209,7 +210,7 @@ void AttachedNodes<Real>::constrain_groups(const NodeShare& share, Real* const u
     follow_on_bones(*group, u, v, bones);
 }
 
-// Finds a new plane where the old one is no longer valid. Where the field ends or has no direction, the old one stays.
+// Finds a new plane if the old one is no longer valid. Where the field ends or has no direction, the old plane is kept.
 template <class Real>
 void AttachedNodes<Real>::renew(Plane& plane, std::int32_t surface, const Point& place) const
 {
@@ -224,18 +225,18 @@ void AttachedNodes<Real>::renew(Plane& plane, std::int32_t surface, const Point&
   plane = { value.gradient, place, value.value, level.slip * level.slip };
 }
 
-// The velocity of the master is the one at which |v - v*|^2, weighted by mass and summed over the group, is least, with
-// v* from before the constraints. A node that is held contributes its mass along all axes, a sliding one along the
-// gradient of its master's level.
+// Finds the velocity of the master that minimises the sum over the group of mass times |v - v*|^2, where v* is the
+// velocity of a node before the constraints, and v that after them. A held node contributes its mass along all axes, a
+// sliding node along the gradient of its master's level.
 template <class Real>
 void AttachedNodes<Real>::follow_on_bones(const Group& group, Real* const u[3], Real* const v[3], const Bones& bones)
 {
   const std::int32_t m = group.master;
   const Point rest = rest_point(model_, m), u_m = point_of(u, m), v_m = point_of(v, m), place_m = rest + u_m;
-  // the motion of a sliding node or of its master relative to the surface
+  // Motion of a sliding node or of its master relative to the surface.
   struct Relative
   {
-    Point gradient;  // of its level, in the scene's axes
+    Point gradient;  // gradient of the level, in the scene's axes
     Point surface_velocity;
     double level;
   };
@@ -257,7 +258,7 @@ void AttachedNodes<Real>::follow_on_bones(const Group& group, Real* const u[3], 
     const Point v_s = point_of(v, tie.node);
     if (tie.surface < 0)
     {
-      // its velocity relative to the bone's is r times the master's
+      // Relative to the bone, the velocity of the held node is r times that of the master.
       const Point apart = v_s - bones.velocity(tie.bone, tie.rest);
       balance.add(r * r * tie.mass, bones.velocity(tie.bone, rest));
       balance.add_momentum(r * tie.mass, apart);
@@ -296,7 +297,7 @@ void AttachedNodes<Real>::follow_on_bones(const Group& group, Real* const u[3], 
     const double speed =
         r * dot(at_m.gradient, now - at_m.surface_velocity) - dot(s.gradient, v_s - s.surface_velocity);
     const double apart = s.level + bones.dt * speed - r * (at_m.level + dot(at_m.gradient, shift)) - tie.offset;
-    // an error is removed as for other sliding nodes (physics/sliding.hpp)
+    // An error of the level is removed gradually, as for other sliding nodes (physics/sliding.hpp).
     const double left = std::clamp(0.5 * apart, -physics::error_left, physics::error_left);
     put(v_s + (speed / steepness) * s.gradient, v, tie.node);
     put(u_s + ((bones.dt * speed - (apart - left)) / steepness) * s.gradient, u, tie.node);

@@ -13,13 +13,13 @@
 namespace frontalis
 {
 
-/// Nodes whose motion follows that of another node (AttachedNode), and joints of flaps, which are one node. After the
-/// free update of a step, a master and the nodes that follow it get the velocities nearest to theirs, in the norm of
-/// their masses, that the constraints allow (Gauss's principle). So forces and masses of the nodes act on the master,
-/// whatever the forces are; constraints at surfaces that are still do no work; and no frequency of the model rises,
-/// because constraints lower Rayleigh quotients: the bounds of the time step hold as they are. Each group of a master
-/// and its nodes is computed by itself, in a fixed order. Groups at surfaces that are still are those of
-/// AttachedBlocks.
+/// Nodes whose motion follows that of another node (AttachedNode), and the joints of flaps, whose two nodes are one.
+/// After the free update of a step, a master and the nodes that follow it get those velocities that the constraints
+/// allow and that are nearest to the updated ones in the norm of masses (Gauss's principle).
+/// Thus forces on the nodes, of any kind, and their masses act on the master, and constraints at surfaces that stand
+/// still do no work. No frequency of the model rises, because constraints lower Rayleigh quotients, so that the bounds
+/// of the time step remain valid. Each group of a master and its nodes is computed by itself, in a fixed order.
+/// AttachedBlocks computes the groups at surfaces that stand still.
 template <class Real>
 class AttachedNodes : public NodePart<Real>
 {
@@ -53,7 +53,7 @@ private:
     Point rest;
     double offset;  // level_offset() [m]
   };
-  // the level of a node, to first order about a place in the frame of the surface
+  // The level of a node, linearised at a place in the frame of the surface.
   struct Plane
   {
     Point gradient{ 0, 0, 0 }, place{ 0, 0, 0 };
@@ -71,7 +71,7 @@ private:
   const std::vector<double>& mass_;
   std::vector<physics::DistanceField> fields_;  // of the model's surfaces
   AttachedBlocks<Real> blocks_;
-  std::vector<Group> groups_;  // groups that are not in blocks_, ascending by master
+  std::vector<Group> groups_;  // groups that are not in blocks_, in ascending order of masters
   std::vector<Tie> ties_;
   std::vector<Plane> planes_;
 };

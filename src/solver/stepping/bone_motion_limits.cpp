@@ -11,9 +11,10 @@ namespace frontalis
 namespace
 {
 
-constexpr double way_per_step = 0.1;             // limit of a bone's path per step, in shortest voxel edges
-constexpr double velocity_jump_allowed = 0.005;  // change of the path per step, in shortest voxel edges
-constexpr double straight_share = 1.0 / 64;      // fraction of a motion in which a bone's path is taken as straight
+constexpr double way_per_step = 0.1;  // longest path of a bone in a step, in shortest voxel edges
+// allowed jump of a bone's velocity, as path per step in shortest voxel edges
+constexpr double velocity_jump_allowed = 0.005;
+constexpr double straight_share = 1.0 / 64;  // fraction of a motion over which a bone's path is taken as straight
 
 }  // namespace
 

@@ -8,7 +8,7 @@
 namespace frontalis
 {
 
-/// Limits of the time step because of moving bones.
+/// Limits that moving bones set to the time step.
 class BoneMotionLimits
 {
 public:
@@ -19,10 +19,10 @@ public:
   /// Longest step [s] in which no bone moves by more than a tenth of a voxel. A faster bone would invert the tissue
   /// attached to it before the time step adapts.
   double longest_step(const Poses& from, const Poses& to, double seconds) const;
-  /// Whether a bone's velocity changes suddenly at the start of this motion, by more than 0.5 % of a voxel per step.
-  /// That is about 1 % of the speed of sound: waves cross about half a voxel in a safe step.
+  /// Whether a bone's velocity jumps at the start of this motion, by more than 0.5 % of a voxel per step. That is about
+  /// 1 % of the speed of sound, because waves cross about half a voxel in a safe step.
   bool jumps(const Poses& from, const Poses& to, double seconds, double step) const;
-  /// Records a motion that has started, for comparison with the next.
+  /// Records a motion that has started, with which jumps() compares the next one.
   void moved(const Poses& from, double seconds);
   void archive(ByteArchive& archive) { archive(before_)(seconds_); }
 

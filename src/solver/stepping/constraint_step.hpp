@@ -7,14 +7,14 @@
 namespace frontalis
 {
 
-/// Time and bone poses of one step.
+/// Times of one step, and poses of the bones at its start and end.
 struct ConstraintStep
 {
-  double time = 0;  ///< at the end of the step [s]
+  double time = 0;  ///< time at the end of the step [s]
   double dt = 0;
-  double time_before = 0;                   ///< at its start [s]
-  std::vector<RigidTransform> bone;         ///< at the end of the step
-  std::vector<RigidTransform> bone_before;  ///< at its start
+  double time_before = 0;                   ///< time at the start of the step [s]
+  std::vector<RigidTransform> bone;         ///< poses at the end of the step
+  std::vector<RigidTransform> bone_before;  ///< poses at the start of the step
 };
 
 }  // namespace frontalis

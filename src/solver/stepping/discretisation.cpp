@@ -38,7 +38,7 @@ double fibre_stiffness(const Model& model, std::size_t voxel, EffectSet running)
   return sum;
 }
 
-// Parameters of a material in a voxel, with the directions of the voxel if it has any.
+// Parameters of a material in a voxel, with the voxel's own fibre directions if it has any.
 physics::MaterialNumbers parameters_in(const Model& model, std::size_t voxel, const Material& material)
 {
   auto parameters = material.parameters;
@@ -52,7 +52,7 @@ physics::MaterialNumbers parameters_in(const Model& model, std::size_t voxel, co
   return parameters;
 }
 
-// Adds a material to the voxel's part that has its law.
+// Adds a material to that part of the voxel that has the material's law.
 void add_law(const Model& model, std::size_t voxel, std::int32_t index, double proportion, std::vector<LawPart>& parts)
 {
   const Material& material = model.materials[static_cast<std::size_t>(index)];
@@ -94,7 +94,7 @@ bool contains_any(const Model& model, std::size_t voxel, const std::vector<std::
   return false;
 }
 
-// Rigid nodes, and nodes with a prescribed displacement in every direction. Empty if these are all nodes, so that a
+// Rigid nodes, and nodes whose displacement is prescribed along every axis. Empty if these are all nodes, so that a
 // model that cannot move has a time step too.
 std::vector<std::int32_t> held_nodes(const Model& model)
 {
@@ -166,11 +166,12 @@ Discretisation::Discretisation(const Model& model)
       }
   added = added_stiffness(model, *this);
   VoxelProperties v;
-  const EffectSet running = std::exchange(running_, EffectSet());  // stiffness without fibres
+  const EffectSet running = std::exchange(running_, EffectSet());  // the stiffness here is that without fibres
   for (std::size_t e = 0; e < model.tissue_centre.size(); ++e)
   {
     mix(e, v);
-    // largest eigenvalue: scalar control has eight times its stiffness; assumed strain has at most twice that
+    // Largest eigenvalue of hourglass control: eight times the scalar stiffness, or at most twice that with assumed
+    // strain.
     const double hourglass = assumed_strain ? 16 * v.hourglass / physics::assumed_strain_floor : 8 * v.hourglass;
     corner_stiffness.push_back(physics::corner_stiffness(v.centre, hourglass / v.stiffness));
   }
@@ -216,10 +217,11 @@ Discretisation::Discretisation(const Model& model)
   bound_at_rest();
 }
 
-// A node that slides into a voxel with little tissue, such as a sliver of tendon below a bone's surface, may have a
-// higher frequency than all nodes that are not attached. It gets extra inertia, at most a fifth of the mass of a whole
-// voxel. A held node follows its master, so that only the sums of stiffness and mass over the group count; the masses
-// for the bound are in proportion to stiffness within the group.
+// Adds inertia to nodes that would shorten the time step: a node that slides into a voxel with little tissue, such as a
+// sliver of tendon below a bone's surface, may have a higher frequency than all free nodes. The added inertia makes its
+// mass at most a fifth of that of a whole voxel's tissue. Then finds the masses for the bound. A held node follows its
+// master, so that only the sums of stiffness and mass over the group count; within a group these masses are in
+// proportion to stiffness.
 void Discretisation::share_masses()
 {
   std::vector<double> stiffness(node_mass.size(), 0), tissue(node_mass.size(), 0);

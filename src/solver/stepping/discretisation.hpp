@@ -13,16 +13,18 @@
 namespace frontalis
 {
 
-/// The part of a voxel that has a law other than neo-Hookean. Each material has its own part, except that Mooney-Rivlin
-/// and Fung materials are averaged by their fractions, because their parameters are moduli and stiffenings.
+/// The part of a voxel that has a law other than neo-Hookean. Each material has a part of its own, but Mooney-Rivlin
+/// materials, and likewise Fung materials, are averaged by their fractions, because their parameters are moduli and
+/// stiffenings.
 struct LawPart
 {
   Law law;
   double weight;  ///< fraction of the voxel's tissue
   std::array<double, physics::parameter_slots> parameters;
   double stiffness_at_rest;  ///< tangent shear stiffness [Pa]
-  double per_tangent;     ///< weight times tissue volume over h^2 of the shortest edge: voxel stiffness per tangent [m]
-  std::int32_t material;  ///< -1: averaged
+  /// voxel stiffness per tangent stiffness: weight times tissue volume divided by h^2 of the shortest edge [m]
+  double per_tangent;
+  std::int32_t material;  ///< -1: averaged from several materials
 };
 
 /// Properties of one voxel, mixed from its materials.
@@ -34,11 +36,11 @@ struct VoxelProperties
   double density = 0;                              ///< mixed, after mass scaling [kg/m3]
   double hourglass = 0;                            ///< scalar stiffness against hourglass modes [N/m]
   physics::AssumedStrain<double> stabilisation{};  ///< [N m]; only with assumed-strain hourglass control
-  /// Bound of the largest eigenvalue of its stiffness at rest, with every muscle at full activation [N/m].
+  /// Bound of the largest eigenvalue of the voxel's stiffness at rest, with every muscle at full activation [N/m].
   double stiffness = 0;
-  physics::TissueCentre<double> centre{};  ///< where its stress is found
+  physics::TissueCentre<double> centre{};  ///< point where the voxel's stress is computed
   std::vector<LawPart> laws;
-  /// Prony terms: fractions are averaged by stiffness, rates [1/s] by relaxing stiffness.
+  /// Prony terms: fractions averaged by stiffness, rates [1/s] averaged by relaxing stiffness.
   std::array<double, 2> viscous_share{};
   std::array<double, 2> viscous_rate{};
 };
@@ -46,8 +48,8 @@ struct VoxelProperties
 /// Shear stiffness of a material at rest [Pa].
 double shear_at_rest(const Material& material);
 
-/// The properties of a model that every backend needs, in double precision. The properties of a voxel are computed on
-/// request and not stored, because each backend stores them in its own form.
+/// The properties of a model that every backend needs, in double precision. Properties of a voxel are computed on
+/// request, because each backend stores them in a form of its own.
 class Discretisation
 {
 public:
@@ -55,7 +57,7 @@ public:
   explicit Discretisation(const Model& model);
 
   void voxel(std::size_t index, VoxelProperties& out) const;
-  /// Includes the running fibre effects in the stiffness bounds. Masses do not change.
+  /// Computes the stiffness bounds with the running fibre effects. Masses do not change.
   void bound(EffectSet running);
   void list_arrays(ArrayList& list) const;
   /// Factor on the stiffness bound of a voxel at one of its corners.
@@ -73,20 +75,20 @@ public:
     return nullptr;
   }
 
-  double volume = 0;                         ///< of a whole voxel [m3]
-  bool assumed_strain = false;               ///< hourglass control by assumed strain
-  bool selective_reduced = false;            ///< no hourglass control
+  double volume = 0;                         ///< volume of a whole voxel [m3]
+  bool assumed_strain = false;               ///< whether hourglass control is by assumed strain
+  bool selective_reduced = false;            ///< whether integration replaces hourglass control
   bool laws = false;                         ///< whether a voxel has a law other than neo-Hookean
   int viscous_terms = 0;                     ///< 0..2
   double viscous_time_min = 0;               ///< [s]
   std::array<double, 3> hourglass_weight{};  ///< 1 / (4 sqrt(3) h) [1/m]
-  std::array<double, 3> stretch_weight{};    ///< 1/h^2 over the sum of the three
-  double stretch_half_sum = 0;               ///< half of that sum [1/m2]
+  std::array<double, 3> stretch_weight{};    ///< 1/h^2 divided by the sum over the three axes
+  double stretch_half_sum = 0;               ///< half of that sum over the axes [1/m2]
   std::vector<double> node_mass;             ///< lumped [kg]
-  /// Masses for the bound of the highest frequency, whose sums over groups of attached nodes are those of node_mass;
-  /// infinite for a node that does not move with its master. Empty: node_mass.
+  /// Masses for the bound of the highest frequency. Over a group of attached nodes they add up to the same mass as
+  /// node_mass; the mass of a node that does not move with its master is infinite. Empty: node_mass.
   std::vector<double> bound_mass;
-  /// Nodes that are held and follow a master: displacement apart from the bone's is `ratio` times the master's.
+  /// A held node that follows a master: its displacement relative to the bone is `ratio` times the master's.
   struct Follower
   {
     std::int32_t node, master;
@@ -94,9 +96,10 @@ public:
   };
   std::vector<Follower> followers;
   std::vector<std::array<float, 8>> corner_stiffness;  ///< factors on the bounds of voxels at their corners; empty: 1
-  std::vector<float> weight_share;                     ///< mass before mass scaling over node_mass; empty: 1
+  std::vector<float> weight_share;                     ///< mass before mass scaling divided by node_mass; empty: 1
   std::vector<std::int32_t> held;                      ///< nodes whose motion is prescribed along all axes, ascending
-  std::vector<std::shared_ptr<AddedStiffness>> added;  ///< included in the bounds whether it acts at present or not
+  /// stiffness that the bounds include whether its effect runs or not
+  std::vector<std::shared_ptr<AddedStiffness>> added;
   double frequency_squared_max = 0;  ///< bound of the highest frequency at rest [1/s2] (physics/time_step.hpp)
 
 private:

@@ -9,10 +9,11 @@ namespace frontalis
 namespace
 {
 
-constexpr double clear_change = 1e-4;  // relative change of displacements that exceeds rounding errors
-constexpr double slow_share = 0.05;  // of the highest speed so far; at lower speeds rounding errors mask the frequency
-constexpr double getting_going = 4;  // phase [rad] of the slowest motion before which the residual is not trusted
-constexpr int enough_windows = 4;    // number of consecutive windows within the tolerance
+constexpr double clear_change = 1e-4;  // relative change of displacements that clearly exceeds rounding errors
+// Fraction of the highest speed so far. At lower speeds rounding errors mask the frequency.
+constexpr double slow_share = 0.05;
+constexpr double getting_going = 4;  // phase [rad] that the slowest motion must pass before its residual is meaningful
+constexpr int enough_windows = 4;    // number of consecutive windows that must be within the tolerance
 
 }  // namespace
 
@@ -42,13 +43,13 @@ void DynamicRelaxation::observe(double time, NodalVectors& u, const Forces& forc
   const double squared = speed > slow_share * fastest_ ? rayleigh_quotient(u, f_now_, change) : 0;
   u_.swap(u);
   f_.swap(f_now_);
-  // Damping is critical for the slowest motion seen. More damping would slow down faster motions.
+  // Damping is critical for the slowest motion found. More damping would slow down faster motions.
   if (squared > 0)
   {
     lowest_ = lowest_ > 0 ? std::min(lowest_, squared) : squared;
     damping_ = std::min(2 * std::sqrt(lowest_), most_damping);
   }
-  // the remaining motion decays at the rate lowest_ / damping_ [1/s]
+  // The remaining motion decays at the rate lowest_ / damping_ [1/s].
   if (lowest_ > 0)
     result_.residual = speed * damping_ / lowest_ / moved;
   else if (change == 0)
@@ -58,7 +59,7 @@ void DynamicRelaxation::observe(double time, NodalVectors& u, const Forces& forc
   result_.reached = good_windows_ == enough_windows;
 }
 
-// root of the sum of m |a - b|^2; a may be empty, for zeros
+// Root of the sum of m |a - b|^2. `a` may be empty and then stands for zeros.
 double DynamicRelaxation::distance(const NodalVectors& a, const NodalVectors& b) const
 {
   double sum = 0;
@@ -71,7 +72,7 @@ double DynamicRelaxation::distance(const NodalVectors& a, const NodalVectors& b)
   return std::sqrt(sum);
 }
 
-// squared frequency [1/s2] of the motion since the window began
+// Squared frequency [1/s2] of the motion since the start of the window.
 double DynamicRelaxation::rayleigh_quotient(const NodalVectors& u_now, const NodalVectors& f_now, double change) const
 {
   double stiffness = 0;

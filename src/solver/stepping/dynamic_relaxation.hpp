@@ -7,16 +7,16 @@
 namespace frontalis
 {
 
-/// Finds the damping with which a motion comes to rest fastest, and its remaining distance from rest (Underwood 1983).
-/// Mass-proportional damping is critical for the lowest frequency that the motion shows: the Rayleigh quotient of its
-/// change of displacements, over windows that last until that change exceeds rounding errors.
+/// Finds the damping with which a motion comes to rest fastest, and the remaining distance from rest (Underwood 1983).
+/// Damping is proportional to mass and critical for the lowest frequency of the motion. The frequency is found as the
+/// Rayleigh quotient of changes of displacements, over windows that last until the change exceeds rounding errors.
 class DynamicRelaxation
 {
 public:
   using Forces = std::function<void(NodalVectors& out)>;
   struct Settings
   {
-    double tolerance;    ///< remaining motion over displacement, in mass-weighted norms
+    double tolerance;    ///< remaining motion divided by displacement, in mass-weighted norms
     double damping;      ///< initial damping, until a frequency has been found [1/s]
     int longest_window;  ///< in calls of observe()
   };
@@ -25,8 +25,8 @@ public:
   DynamicRelaxation(const Settings& settings, const std::vector<double>& mass, double time, NodalVectors u,
                     NodalVectors f);
 
-  /// Evaluates the motion at displacements u, which are moved from. `forces` computes the internal forces there if they
-  /// are needed. `last`: the motion ends here. Damping stays below `most_damping` [1/s].
+  /// Evaluates the motion at displacements u, which are moved from. `forces` computes the internal forces at u if they
+  /// are needed. `last`: whether the motion ends here. Damping stays below `most_damping` [1/s].
   void observe(double time, NodalVectors& u, const Forces& forces, double most_damping, bool last);
 
   double damping() const { return damping_; }

@@ -35,9 +35,9 @@ std::vector<EnergyTerm> energy_terms_of_effects()
 {
   using Kind = EnergyTerm::Kind;
   return {
-    { "contact", Kind::work },           // of the motion of bodies that tissue touches
-    { "contact_stored", Kind::stored },  // by the stiffness of contact
-    { "shell", Kind::stored },           // by layers that are shells
+    { "contact", Kind::work },           // work of the motion of bodies that tissue touches
+    { "contact_stored", Kind::stored },  // energy in the stiffness of contact
+    { "shell", Kind::stored },           // energy of layers that are shells
   };
 }
 

@@ -17,7 +17,7 @@ std::vector<std::unique_ptr<NodePart<Real>>> node_parts(const Model& model, cons
 /// Terms of the energy ledger that exist because of an effect.
 std::vector<EnergyTerm> energy_terms_of_effects();
 
-/// Stiffness that effects of a model add to its voxels. The voxels' bounds must not include it yet.
+/// Stiffness that effects of a model add to its voxels. The voxels' bounds must not include this stiffness yet.
 std::vector<std::shared_ptr<AddedStiffness>> added_stiffness(const Model& model, const Discretisation& discretisation);
 
 }  // namespace frontalis

@@ -18,9 +18,10 @@ public:
   /// Switches an effect; returns false if nothing changes. Throws Error if the model does not have the effect, if
   /// another effect needs it, or if it cannot be switched while running.
   bool change(Effect effect, bool on);
-  /// Acceleration [m/s2] for the scaled masses: uniform mass scaling does not change weight.
+  /// Acceleration of gravity for the scaled masses [m/s2]. It is reduced, because uniform mass scaling must not change
+  /// weight.
   std::array<double, 3> gravity() const;
-  /// Activations that act on the fibres.
+  /// Activations that act on the fibres: 0 while contraction is switched off.
   std::vector<float> felt(const std::vector<float>& activation) const;
 
 private:
@@ -28,9 +29,9 @@ private:
   EffectSet running_;
 };
 
-/// Whether an effect is one of fibres: they stiffen a voxel and contract it.
+/// Whether fibres have the effect: they contract a voxel and stiffen it.
 inline bool is_of_fibres(Effect effect) { return effect == Effect::contraction || effect == Effect::fibre_stiffness; }
-/// The effect to which memory of fibres is attributed: contraction if the model has it.
+/// The effect to which memory for fibres is attributed: contraction if the model has that effect.
 Effect effect_of_fibres(const Model& model);
 
 }  // namespace frontalis

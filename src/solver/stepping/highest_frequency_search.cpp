@@ -8,7 +8,7 @@ namespace frontalis
 namespace
 {
 
-// length of a mode, and the largest displacement of a node along an axis in it
+// Squared length of a mode, and the largest displacement of a node along an axis in the mode.
 struct ModeSize
 {
   double squared_length = 0, largest = 0;
@@ -41,7 +41,7 @@ double highest_frequency_squared(const Model& model, const Discretisation& discr
                                  const std::function<void(const NodalVectors& at, NodalVectors& out)>& internal_forces,
                                  int most_iterations, NodalVectors& mode)
 {
-  std::vector<double> root;  // root of the inverse mass of each node; 0: held
+  std::vector<double> root;  // square root of each node's inverse mass; 0: the node is held
   for (const double mass : discretisation.node_mass)
     root.push_back(1 / std::sqrt(mass));
   for (const auto n : discretisation.held)

@@ -9,9 +9,9 @@ namespace frontalis
 {
 
 /// Largest eigenvalue of a matrix by power iteration. `multiply(step)` replaces a mode by its product with the matrix
-/// and returns the ratio of their lengths. It computes the product as a difference of forces for a displacement by
-/// `step` [m] along the mode. The sign of `step` alternates, so that errors from the curvature of the laws cancel.
-/// Stops early if the eigenvalue has settled or is not finite.
+/// and returns the ratio of their lengths. The product is a difference of forces for a displacement by `step` [m] along
+/// the mode. The sign of `step` alternates, so that errors from the curvature of the laws cancel. The iteration stops
+/// early if the eigenvalue has settled or is not finite.
 template <class Multiply>
 double largest_eigenvalue(int most_iterations, double step, const Multiply& multiply)
 {
@@ -30,15 +30,15 @@ double largest_eigenvalue(int most_iterations, double step, const Multiply& mult
   return eigenvalue;
 }
 
-/// A random start mode; and the step for largest_eigenvalue() [m], resolved in single precision and small against the
-/// laws' curvature.
+/// A random start mode for largest_eigenvalue(), and its step [m], which single precision resolves and which is small
+/// compared with the curvature of the laws.
 NodalVectors random_mode(std::size_t nodes);
 double mode_amplitude(const Model& model);
 
 /// Squared highest frequency [1/s2] of the assembled model at displacements u, by power iteration on M^-1/2 K M^-1/2.
 /// `mode`: start of the iteration, empty at first; receives the mode found. Products with K are differences of internal
-/// forces, so that they include every law and fibre. Held nodes do not move, and attached nodes that are held follow
-/// their masters; other constraints could only lower the frequency and are omitted.
+/// forces and therefore include every law and fibre. Held nodes do not move, and held attached nodes follow their
+/// masters. Other constraints could only lower the frequency and are omitted.
 double highest_frequency_squared(const Model& model, const Discretisation& discretisation, const NodalVectors& u,
                                  const std::function<void(const NodalVectors& at, NodalVectors& out)>& internal_forces,
                                  int most_iterations, NodalVectors& mode);

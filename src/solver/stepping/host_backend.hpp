@@ -8,7 +8,7 @@
 namespace frontalis
 {
 
-/// Relaxed part of the stresses of viscous voxels, in the order of a backend.
+/// Relaxed part of the stresses of viscous voxels, stored in the order of a backend.
 template <class T>
 class RelaxedStresses : public EffectPart
 {
@@ -29,8 +29,8 @@ private:
   bool runs_ = true;
 };
 
-/// Base of the backends in host memory: nodal motion, loads, constraints, the account of energies and snapshots. Real
-/// is the number type of the motion, Relaxed that of RelaxedStresses.
+/// Base of the backends that run in host memory: nodal motion, loads, constraints, the account of energies and
+/// snapshots. Real is the number type of the motion, Relaxed the entry type of RelaxedStresses.
 template <class Real, class Relaxed>
 class HostBackend : public StepBackend
 {
@@ -50,7 +50,7 @@ public:
 protected:
   using Components = std::array<std::vector<Real>, 3>;
 
-  /// `padding`: entries of the motion beyond the last node.
+  /// `padding`: number of entries of the motion beyond the last node.
   HostBackend(const BackendInput& input, std::size_t padding, const PartKernels<Real>& kernels);
 
   virtual void rest();
@@ -62,7 +62,7 @@ protected:
   /// Inverse of interleave(); components may have more entries.
   static void separate(const NodalVectors& in, Components& out);
 
-  /// The parts that are not idle.
+  /// The parts of effects that are not idle.
   std::vector<NodePart<Real>*> active_parts() const;
 
   Components u_, v_;

@@ -7,7 +7,6 @@
 namespace frontalis
 {
 
-/// Properties of a voxel for mass scaling.
 struct ScaledVoxel
 {
   double stiffness;  ///< bound [N/m]
@@ -16,8 +15,8 @@ struct ScaledVoxel
 };
 
 /// Returns a factor on each voxel's mass with which the chosen voxels allow the time step of the other voxels, or the
-/// requested one; empty if no mass changes. A chosen voxel adds to each of its nodes the mass that its own stiffness
-/// requires there (physics/time_step.hpp). `corner_stiffness`, `held`: as in Discretisation.
+/// requested one; empty if no mass changes. A chosen voxel adds to each of its nodes the mass that the voxel's
+/// stiffness requires there (physics/time_step.hpp). `corner_stiffness`, `held`: as in Discretisation.
 std::vector<float> selective_mass_factors(const Model& model, const std::vector<ScaledVoxel>& voxels,
                                           const std::vector<std::array<float, 8>>& corner_stiffness,
                                           const std::vector<std::int32_t>& held);

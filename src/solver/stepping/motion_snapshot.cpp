@@ -55,7 +55,7 @@ void TimeStepper::restore(const Snapshot& snapshot)
     ledger_->restore(saved->ledger);
   backend_->restore(*saved->backend);
   renew_conditions();
-  // the running effects are not restored: adapt the restored state to them
+  // The running effects are not restored, so that the restored state must be adapted to them.
   std::vector<Effect> switched;
   for (const Effect effect : every_effect())
     if (saved->running.has(effect) != effects_.running().has(effect))

@@ -10,7 +10,7 @@ namespace frontalis
 {
 
 /// First-order response of muscles to commanded activations, which change linearly over `seconds`: da/dt = (asked - a)
-/// / time, with the rise or fall time (Zajac 1989, Crit. Rev. Biomed. Eng. 17:359), limited by the model's slew rate.
+/// / time with the rise or fall time (Zajac 1989, Crit. Rev. Biomed. Eng. 17:359). The model's slew rate limits da/dt.
 inline void respond(const Model& model, const std::vector<float>& asked_from, const std::vector<float>& asked_to,
                     double seconds, std::vector<float>& activation)
 {

@@ -16,7 +16,8 @@ using Vector = physics::Vec3<double>;
 
 Vector vector(const std::array<double, 3>& a) { return { a[0], a[1], a[2] }; }
 
-// Each corner takes a third of its triangle's force: area vector times pressure, or area times traction.
+// Forces on the vertices of a loaded surface. Each corner takes a third of its triangle's force, which is the area
+// vector times the pressure, or the area times the traction.
 void vertex_forces(const Load& load, double ramp, const std::vector<std::array<double, 3>>& vertices,
                    std::vector<std::array<double, 3>>& forces)
 {

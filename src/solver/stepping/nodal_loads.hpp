@@ -8,13 +8,13 @@
 namespace frontalis
 {
 
-/// Nodes with selectively scaled mass, whose weight would otherwise be too large.
+/// Nodes whose mass is scaled selectively, so that gravity on them would otherwise be too large.
 std::vector<std::int32_t> relieved_nodes(const Model& model, const Discretisation& discretisation);
-/// Force that corrects gravity on such a node [N].
+/// Force that corrects gravity on a node of relieved_nodes() [N].
 std::array<double, 3> gravity_relief(const Model& model, const Discretisation& discretisation, std::int32_t node);
 
 /// Tractions and follower pressures on bound surfaces as nodal forces, through the transposed binding and summed in a
-/// fixed order; and the correction of gravity for selective mass scaling.
+/// fixed order. Also corrects gravity for selective mass scaling.
 template <class Real>
 class NodalLoads : public NodePart<Real>
 {
@@ -56,20 +56,20 @@ private:
   struct Surface
   {
     const Load* load;
-    std::vector<std::int32_t> begin;  // start of each loaded node's contributions
+    std::vector<std::int32_t> begin;  // first contribution of each loaded node
     std::vector<Contribution> contributions;
     std::vector<std::array<double, 3>> vertex_force;
     std::vector<std::array<double, 3>> vertices;
   };
 
-  /// Calls visit(l) for the loaded nodes of a share.
+  /// Calls visit(l) for each loaded node l of a share.
   template <class Visit>
   void each(const NodeShare& share, const Visit& visit) const;
 
   const Model& model_;
   std::vector<std::int32_t> nodes_;
   std::vector<std::array<double, 3>> surface_forces_, forces_;
-  std::vector<std::array<double, 3>> relief_;  // one per loaded node; empty without scaled mass
+  std::vector<std::array<double, 3>> relief_;  // correction of gravity, one per loaded node; empty without scaled mass
   std::vector<Surface> surfaces_;
   bool runs_ = true, relieves_ = true;
 };

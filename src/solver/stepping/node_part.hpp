@@ -21,15 +21,15 @@ struct NodeShare
   std::int32_t first_node, end_node;
 };
 
-/// Applies external forces to nodes: either subtracts them from internal forces, or corrects the nodes after their
-/// update, which is linear in the force.
+/// Applies external forces to nodes. Either subtracts them from internal forces, or corrects nodes that were already
+/// updated; the correction is exact, because the update is linear in the force.
 template <class Real>
 class ForceSink
 {
 public:
-  /// For subtracting forces from internal forces [N].
+  /// Makes a sink that subtracts forces from internal forces [N].
   explicit ForceSink(Real* const internal[3]) : u_{ internal[0], internal[1], internal[2] } {}
-  /// For correcting displacements [m] and velocities [m/s]. `gain`: of a physics::Kick.
+  /// Makes a sink that corrects displacements [m] and velocities [m/s]. `gain`: that of a physics::Kick.
   ForceSink(Real gain, Real dt, const float* inverse_mass, Real* const u[3], Real* const v[3])
       : gain_(gain), dt_(dt), inverse_mass_(inverse_mass), u_{ u[0], u[1], u[2] }, v_{ v[0], v[1], v[2] }
   {
@@ -58,17 +58,17 @@ template <class Real>
 class NodePart : public EffectPart
 {
 public:
-  /// If true, none of the other functions is called.
+  /// Whether the part has nothing to do. If so, none of the other functions is called.
   virtual bool idle() const = 0;
-  /// Whether prepare_step() does anything. If so, threads wait for each other between it and before_step().
+  /// Whether prepare_step() does anything. If so, threads wait for each other between prepare_step() and before_step().
   virtual bool prepares() const { return false; }
-  /// Whether add_forces() adds any. If so, threads wait for each other between before_step() and add_forces().
+  /// Whether add_forces() adds forces. If so, threads wait for each other between before_step() and add_forces().
   virtual bool pushes() const { return false; }
-  /// prepare_step() and before_step() are called with the displacements at the start of the step.
+  /// The two functions are called with the displacements at the start of the step.
   virtual void prepare_step(const NodeShare& /*share*/, const Real* const /*u*/[3]) {}
   virtual void before_step(const NodeShare& /*share*/, const Real* const /*u*/[3], const ConstraintStep& /*step*/) {}
   virtual void add_forces(const NodeShare& /*share*/, const ForceSink<Real>& /*sink*/) {}
-  /// Overwrites displacements and velocities after the update. `before`: displacements before it.
+  /// Overwrites displacements and velocities after the update. `before`: displacements before the update.
   virtual void constrain(const NodeShare& /*share*/, Real* const /*u*/[3], Real* const /*v*/[3],
                          const Real* const /*before*/[3], const ConstraintStep& /*step*/)
   {
@@ -91,8 +91,8 @@ public:
   {
   }
 
-  /// Adds the effect's present energies to terms of the ledger, and its present forces [N] to `forces` if that is not
-  /// empty. `open`: works and losses count from now on. `bones`: present poses.
+  /// Adds the effect's present energies to terms of the ledger. Also adds the present forces [N] to `forces`, unless
+  /// that is empty. `open`: works and losses count from now on. `bones`: present poses.
   virtual void add_energies(const Real* const /*u*/[3], const std::vector<RigidTransform>& /*bones*/, bool /*open*/,
                             std::vector<std::array<double, 3>>& /*forces*/, EnergyLedger& /*ledger*/)
   {
@@ -101,7 +101,7 @@ public:
   virtual std::vector<Reaction> reactions() const { return {}; }
   /// Present poses of the bodies of reactions(), from those of the bones.
   virtual std::vector<RigidTransform> bodies(const std::vector<RigidTransform>& /*bones*/) const { return {}; }
-  /// Monitor::lost_points.
+  /// Value of Monitor::lost_points.
   virtual std::int64_t lost_points() const { return 0; }
 };
 

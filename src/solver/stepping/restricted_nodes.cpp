@@ -67,7 +67,7 @@ RestrictedNodes<Real>::RestrictedNodes(const Model& model, SlideKernel<Real> ker
   auto sliding = model.sliding;
   sort_by_node(sliding);
   // Replacing a plane that was kept for several steps jolts the tissue. If any surface has friction, no node keeps its
-  // plane: friction also follows the jolts of nodes without friction, and would dissipate several percent too much.
+  // plane: friction also responds to the jolts of nodes without friction, and would dissipate several percent too much.
   const auto& surfaces = model.constraint_surfaces;
   const bool rough = std::any_of(surfaces.begin(), surfaces.end(), [](const auto& s) { return s.friction > 0; });
   if (!rough)
@@ -85,8 +85,8 @@ RestrictedNodes<Real>::RestrictedNodes(const Model& model, SlideKernel<Real> ker
   reset();
 }
 
-// Collects sliding nodes in blocks. A block starts at the first sliding node that is in no block yet, or earlier so
-// that it ends within the node plane.
+// Collects sliding nodes in blocks. A block starts at the first sliding node that is in no block yet, or earlier if the
+// block would otherwise extend beyond the node plane.
 template <class Real>
 void RestrictedNodes<Real>::make_blocks(const std::vector<SlidingNode>& nodes)
 {
@@ -199,7 +199,7 @@ void RestrictedNodes<Real>::renew(void* renewal, std::int32_t block, int lane, c
 {
   const auto& [self, step] = *static_cast<Renewal*>(renewal);
   const auto index = self->block_sliding_[block][lane];
-  // the kernel calls this also for a node that does not slide, if its displacement is NaN
+  // The kernel also calls this function for a node that does not slide, if the node's displacement is NaN.
   if (index < 0)
     return;
   const Sliding& s = self->sliding_[index];

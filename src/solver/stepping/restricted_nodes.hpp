@@ -11,7 +11,7 @@ namespace frontalis
 {
 
 /// Rigid, prescribed and sliding nodes: overwrites their displacement and velocity after the update of a step. Threads
-/// may process disjoint ranges of node planes. Real is the backend's number type.
+/// may process disjoint ranges of node planes at the same time. Real is the backend's number type.
 template <class Real>
 class RestrictedNodes : public NodePart<Real>
 {
@@ -34,13 +34,14 @@ public:
   /// State of sliding nodes on their surfaces.
   struct Contacts
   {
-    typename GlidingNodes<Real>::States gliding;  ///< of all sliding nodes if any surface has friction
-    std::vector<Block> blocks;                    ///< of all of them otherwise
-    std::vector<Carried> carried;                 ///< of the nodes of `blocks` that slide on bones
+    /// state of all sliding nodes if any surface has friction
+    typename GlidingNodes<Real>::States gliding;
+    std::vector<Block> blocks;     ///< state of all sliding nodes otherwise
+    std::vector<Carried> carried;  ///< planes of the nodes of `blocks` that slide on bones
     std::vector<Carrier> carriers;
   };
 
-  /// `kernel` may also read the other nodes that lie between sliding nodes of a plane, and write them back unchanged.
+  /// `kernel` may also read the nodes of a plane that lie between sliding nodes, and write them back unchanged.
   explicit RestrictedNodes(const Model& model, SlideKernel<Real> kernel = slide_plainly<Real>);
 
   void reset() override;
@@ -51,9 +52,10 @@ public:
     for (auto k = share.first_plane; k < share.end_plane; ++k)
       account.friction(k, *this, v);
   }
-  /// Energy [J] that friction dissipated at nodes [first, last) in the latest step: -I . (mean of v- and v+ - velocity
-  /// of the surface), with I = m (v+ - v*) along the surface; v-: before the step, v*: without constraints, v+: after
-  /// it [m/s]. Mass [kg] and velocities are those of all nodes. Nodes are summed in order.
+  /// Energy [J] that friction dissipated at nodes [first, last) in the latest step: the sum of -I . ((v- + v+) / 2 -
+  /// velocity of the surface), with the impulse I = m (v+ - v*) along the surface. The velocities [m/s] are v- before
+  /// the step, v* without constraints and v+ after the step. Mass [kg] and velocities are those of all nodes. Nodes are
+  /// summed in order.
   double friction_loss(std::int32_t first, std::int32_t last, const std::vector<double>& mass,
                        const Real* const before[3], const Real* const without[3], const Real* const after[3]) const
   {
@@ -87,7 +89,7 @@ private:
   const Model& model_;
   SlideKernel<Real> kernel_;
   std::vector<physics::DistanceField> fields_;  // of the model's surfaces
-  std::vector<RigidNode> rigid_;                // all lists sorted by node
+  std::vector<RigidNode> rigid_;                // all lists are sorted by node
   std::vector<PrescribedNode> prescribed_;
   GlidingNodes<Real> gliding_;
   std::vector<Sliding> sliding_;

@@ -33,11 +33,11 @@ struct BackendState
 struct BackendTraits
 {
   std::string description;  ///< backend, number type, instruction set or device, threads
-  /// A plan lasts this long [s] if its number of steps stays within the next two values.
+  /// A plan lasts this long [s], as far as its number of steps stays within the next two values.
   double seconds_per_plan = 0;
   int fewest_steps_per_plan = 32;
   int most_steps_per_plan = 32;
-  int steps_per_observation = 32;  ///< steps between two looks at all displacements during dynamic relaxation
+  int steps_per_observation = 32;  ///< steps between two evaluations of all displacements during dynamic relaxation
   int steps_per_check = 512;       ///< Solver::steps_per_check
 };
 
@@ -50,7 +50,7 @@ struct BackendInput
   const SolverSettings& settings;  ///< the only member that need not outlive the backend
 };
 
-/// Makes time steps, with nodes and voxels in its own memory; TimeStepper makes a Solver of it. Initially at rest.
+/// Makes time steps, with nodes and voxels in memory of its own; TimeStepper turns it into a Solver. Initially at rest.
 class StepBackend
 {
 public:
@@ -60,30 +60,31 @@ public:
   virtual void list_arrays(ArrayList& list) = 0;
 
   /// Runs the plan's steps. Returns the largest squared frequency bound [1/s2] found in them, or NaN if displacements
-  /// are not finite. If the plan allows it, this may be the bound of the previous plan.
+  /// are not finite. If the plan allows it, the returned bound may be that of the previous plan.
   virtual double run(const StepPlan& plan) = 0;
-  /// Called when Conditions::running and bounds have changed. Effects that are switched on again have no history.
+  /// Called after Conditions::running and the bounds have changed. Effects that are switched on again start without
+  /// history.
   virtual void effects_switched() = 0;
 
   virtual void get(NodalField field, NodalVectors& out) const = 0;
   /// Sets a field of all nodes; an empty list stands for zeros. Setting displacements resets all other state to rest.
   virtual void set(NodalField field, const NodalVectors& in) = 0;
-  /// `to` may hold an earlier state of this backend, whose memory is used again.
+  /// `to` may hold an earlier state of this backend, whose memory is reused.
   virtual void save(std::unique_ptr<BackendState>& to) = 0;
   virtual void restore(const BackendState& from) = 0;
 
-  /// Internal forces [N] at `displacements`; null: at the present ones.
+  /// Internal forces [N] at `displacements`; null stands for the present displacements.
   virtual void internal_forces(const NodalVectors* displacements, NodalVectors& out) = 0;
-  /// Largest eigenvalue [1/s2] of M^-1/2 K M^-1/2 at the present displacements with held nodes fixed, if the backend
-  /// can search for it faster than internal_forces() allows.
+  /// Largest eigenvalue [1/s2] of M^-1/2 K M^-1/2 at the present displacements with held nodes fixed. Returns nothing
+  /// if the backend cannot search for it faster than internal_forces() allows.
   virtual std::optional<double> highest_frequency_squared(int /*most_iterations*/) { return std::nullopt; }
   virtual Monitor monitor() = 0;
-  /// Work since the account was opened; `open`: opens it now. Called only if SolverSettings::ledger is set.
+  /// Work since the account was opened; `open`: open the account now. Called only if SolverSettings::ledger is set.
   virtual Work work(bool open) = 0;
   /// See NodePart::add_energies.
   virtual void add_energies(bool /*open*/, NodalVectors& /*forces*/, EnergyLedger& /*ledger*/) {}
   virtual std::vector<Reaction> reactions() const { return {}; }
-  /// Monitor::lost_points.
+  /// Value of Monitor::lost_points.
   virtual std::int64_t lost_points() const { return 0; }
   /// Present poses of the bodies of reactions(). The pose of a pushed body differs from its bone's.
   virtual std::vector<RigidTransform> bodies() const { return {}; }

@@ -11,7 +11,7 @@ struct StepBound
   double frequency_squared = 0;  ///< [1/s2]; NaN if the stiffness of a voxel is NaN
   std::int32_t node = -1;
 
-  /// Adds a part. Add parts in the order of their nodes.
+  /// Adds another part. Parts must be added in the order of their nodes.
   void add(const StepBound& part)
   {
     if (!(part.frequency_squared <= frequency_squared) && frequency_squared == frequency_squared)
@@ -19,24 +19,24 @@ struct StepBound
   }
 };
 
-/// Indices [first, last).
+/// The indices [first, last).
 struct IndexRange
 {
   std::int32_t first, last;
 };
 
-/// Bound of some nodes from the stiffness bound of every voxel [N/m]. `voxels`: at least those that touch the nodes.
-/// `sum`: room for one number per node of the model, used only at these nodes.
+/// Bound of some nodes, from the stiffness bound of every voxel [N/m]. `voxels`: at least the voxels at these nodes.
+/// `sum`: memory for one number per node of the model; only the entries of these nodes are used.
 StepBound bound_of_nodes(const Discretisation& discretisation, const Model& model, const double* stiffness,
                          IndexRange voxels, IndexRange nodes, double* sum);
 
-/// Bound of the whole model.
 StepBound step_bound(const Discretisation& discretisation, const Model& model, const std::vector<double>& stiffness);
 
-/// The stiffest of the voxels at a node; -1 for node -1.
+/// Index of the stiffest of the voxels at a node; -1 if `node` is -1.
 std::int32_t stiffest_voxel_at(const Model& model, std::int32_t node, const double* stiffness);
 
-/// 1 / mass of every node for the bound [1/kg], 0 for held nodes; empty if these are the masses of all nodes.
+/// 1 / mass of every node for the bound [1/kg], 0 for held nodes; empty if the masses for the bound are those of all
+/// nodes.
 std::vector<float> mobility(const Discretisation& discretisation);
 
 }  // namespace frontalis

@@ -8,13 +8,14 @@
 namespace frontalis
 {
 
-/// Inputs of steps that are not part of a plan. The time stepper changes them between two plans; backends read them.
+/// Inputs of steps that are not part of a plan. The time stepper changes them between two plans, and backends read
+/// them.
 struct Conditions
 {
   EffectSet running;
-  std::array<double, 3> gravity{};   ///< [m/s2] for the scaled masses; 0 if the effect is off
-  double damping = 0;                ///< mass-proportional [1/s]
-  std::vector<float> activation;     ///< present activation of each muscle in its fibres; 0 if contraction is off
+  std::array<double, 3> gravity{};  ///< acceleration for the scaled masses [m/s2]; 0 if the effect is off
+  double damping = 0;               ///< mass-proportional [1/s]
+  std::vector<float> activation;  ///< present activation of each muscle as its fibres feel it; 0 if contraction is off
   std::vector<RigidTransform> bone;  ///< present poses
 
   template <class Real>
@@ -24,20 +25,21 @@ struct Conditions
   }
 };
 
-/// A part of a motion, in equal steps, over which activations and bone poses change linearly from begin to end.
+/// A part of a motion in equal steps, over which activations and bone poses change linearly from `begin` to `end`.
 struct StepPlan
 {
   int steps = 0;
   double dt = 0;  ///< [s]
   /// Duration for which forces change velocities in the first step [s]. It differs from dt if the previous step had
-  /// another length, because velocities are those half a step before the displacements.
+  /// another length, because velocities belong to the middle between two steps.
   double first_kick = 0;
-  double time = 0;                        ///< at its start [s]
-  bool bound_every_step = false;          ///< true: find the frequency bound in every step; false: in the last one only
-  bool bound_awaited = false;             ///< true: run() must return the bound of this plan, not of the previous one
-  double alarming_frequency_squared = 0;  ///< if the previous plan's bound is above it, run() waits for its own [1/s2]
-  Controls begin, end;                    ///< activations as fibres feel them
-  std::vector<double> relaxation;         ///< one per step: by how much viscous stresses relax after it [s]
+  double time = 0;                ///< time at the start of the plan [s]
+  bool bound_every_step = false;  ///< true: find the frequency bound in every step; false: in the last one only
+  bool bound_awaited = false;     ///< true: run() must return the bound of this plan, not of the previous one
+  /// run() waits for this plan's bound if the previous plan's bound exceeds this value [1/s2]
+  double alarming_frequency_squared = 0;
+  Controls begin, end;             ///< activations as fibres feel them
+  std::vector<double> relaxation;  ///< one per step: by how much viscous stresses relax after it [s]
 
   double fraction(int step) const { return (step + 1.0) / steps; }
   void activation(int step, float* out) const

@@ -13,21 +13,23 @@ namespace frontalis
 namespace
 {
 
-// These numbers are empirical: the hard cases of doc/stability.md hold with them.
-constexpr double cautious_share = 0.55;  // of the critical step, instead of the model's time_step_share
-constexpr int cautious_plan = 8;         // steps in a plan
-constexpr int vibration_plan = 32;       // most steps in a plan
-// signs of fast change, and the number of steps of caution after each
+// These values are empirical: with them the hard cases of doc/stability.md pass.
+constexpr double cautious_share = 0.55;  // cautious steps: fraction of the critical step
+constexpr int cautious_plan = 8;         // number of steps in a cautious plan
+constexpr int vibration_plan = 32;       // largest number of steps in a plan while tissue vibrates
+// The following constants define signs of fast change, and the number of cautious steps after each.
 constexpr double growth_allowed = 1.1;  // ratio of squared frequencies of successive plans
 constexpr int steps_after_stiffening = 128;
-constexpr float activation_change_allowed = 0.3F;  // of a muscle within a plan
+constexpr float activation_change_allowed = 0.3F;  // change of a muscle's activation within a plan
 constexpr int steps_after_a_switch = 48;
-constexpr int steps_after_a_jump = 1000;  // of a bone's velocity
-// Tissue that is much stiffer than at rest and changes from plan to plan vibrates; a contraction stiffens it slowly.
-constexpr double stiffening_ratio = 4;     // squared frequency over that at rest
+constexpr int steps_after_a_jump = 1000;  // after a jump of a bone's velocity
+// Tissue that is much stiffer than at rest and changes from plan to plan vibrates; a contraction stiffens tissue
+// slowly.
+constexpr double stiffening_ratio = 4;     // ratio of the squared frequency to that at rest
 constexpr double vibration_change = 0.05;  // relative change of the squared frequency between plans
 constexpr int steps_after_vibration = 256;
-// The bound follows softening slowly: tissue may stiffen again soon, and each change of the step costs accuracy.
+// The bound follows softening slowly, because tissue may stiffen again soon, and each change of the step costs
+// accuracy.
 constexpr double slowest_softening = 0.95;  // ratio of squared frequencies of successive plans
 
 }  // namespace
@@ -81,7 +83,7 @@ TimeStepController::Choice TimeStepController::choose(double remaining, double l
     most_steps = cautious_plan;
   else if (vibrates)
     most_steps = std::min(vibration_plan, most_steps);
-  // without the tolerance, a rounding error could add a step
+  // Without the tolerance, a rounding error could add a step.
   const double steps_left = std::ceil(remaining / std::min(dt, longest) * (1 - 1e-9));
   return { static_cast<int>(std::min<double>(steps_left, most_steps)), remaining / steps_left, steps_left <= most_steps,
            cautious, cautious || vibrates };

@@ -6,12 +6,13 @@
 namespace frontalis
 {
 
-/// Chooses the length of steps, and the number of steps until the frequency bound is found again. Its inputs are the
-/// bounds that a backend finds, the activations, and jumps of bones.
+/// Chooses the length of steps, and the number of steps until the frequency bound is found again, from the bounds that
+/// a backend finds, the activations, and jumps of bones.
 ///
-/// Just below the critical step, tissue that stiffens as it vibrates gains or loses energy in every swing. So the
-/// controller is cautious for some steps after signs of fast change: steps are shorter, plans have few steps, and the
-/// bound is found in every step. While stiffened tissue vibrates, steps are shorter and the length of plans is limited.
+/// Just below the critical step, tissue that stiffens as it vibrates gains or loses energy in every swing. The
+/// controller therefore is cautious for some steps after signs of fast change: steps are shorter, plans have few steps,
+/// and the bound is found in every step. While stiffened tissue vibrates, steps are shorter and the length of plans is
+/// limited.
 class TimeStepController
 {
 public:
@@ -29,7 +30,7 @@ public:
       assembled.archive(archive);
     }
   };
-  /// The next plan.
+  /// Properties of the next plan.
   struct Choice
   {
     int steps;
@@ -43,7 +44,7 @@ public:
   /// step is above the critical one at rest.
   TimeStepController(double rest_frequency_squared, double safety_share, double fixed_step);
 
-  /// Longest step [s] that would be taken now if nothing called for caution.
+  /// Longest step [s] that would be made now without caution.
   double safe_step() const;
   /// Limits further steps to this fraction of the safe step. Throws Error if it is out of range.
   void slow_down(double share);
@@ -52,10 +53,10 @@ public:
   /// The next plan of a motion that ends after `remaining` [s], with steps of at most `longest` [s].
   Choice choose(double remaining, double longest, const BackendTraits& backend) const;
 
-  /// Records the largest bound found in the latest plan, or in the previous one.
+  /// Records the largest bound that a backend found in the latest plan or in the one before.
   void observe(double frequency_squared, int steps);
-  /// Whether a muscle is switched between these activations. If so, becomes cautious: the muscle's voxels stiffen at
-  /// once, and the voxels that it pulls on a little later.
+  /// Whether a muscle is switched on or off between these activations. If so, the controller becomes cautious, because
+  /// the muscle's voxels stiffen at once, and the voxels that it pulls stiffen a little later.
   bool muscles_switched(const std::vector<float>& from, const std::vector<float>& to);
   /// Becomes cautious, because the velocity of a bone has jumped (BoneMotionLimits).
   void bone_jumped();
@@ -64,7 +65,6 @@ public:
   void displacements_set(double frequency_squared);
   /// Sets the bound at rest [1/s2], which changes when effects are switched.
   void set_rest_frequency(double squared) { rest_frequency_squared_ = squared; }
-  /// Returns to the state at rest.
   void reset();
 
   const State& state() const { return state_; }

@@ -18,13 +18,13 @@ namespace frontalis
 namespace
 {
 
-// Viscous stresses relax whenever this fraction of the shortest time constant has passed, and at the end of each plan.
+// Viscous stresses relax at the end of each plan, and whenever this fraction of the shortest time constant has passed.
 constexpr double relaxation_interval = 0.005;
-constexpr double fully_relaxed = 1e9;  // [s] longer than any time constant
-// During dynamic relaxation, a window ends after this number of steps even if no motion is seen.
+constexpr double fully_relaxed = 1e9;  // a time longer than any time constant [s]
+// During dynamic relaxation, a window ends after this number of steps even if no motion is found.
 constexpr int steps_per_window = 2048;
 
-// adds the wall seconds of its lifetime to a sum
+// Adds the wall seconds from its construction to its destruction to a sum.
 class Stopwatch
 {
 public:
@@ -183,7 +183,7 @@ void TimeStepper::renew_assembled_estimate(const std::vector<float>& asked)
   controller_.assembled().renew(motion_.activation, asked, controller_.state().frequency_squared, search);
 }
 
-// moves the muscles' activations on to the end of the plan
+// Makes a plan with these next controls, and advances the muscles' activations to its end.
 StepPlan TimeStepper::plan_to(const Controls& next, const TimeStepController::Choice& choice)
 {
   StepPlan plan;
@@ -231,7 +231,7 @@ Equilibrium TimeStepper::settle(const Controls& target, double tolerance, double
   if (!(tolerance > 0) || !std::isfinite(tolerance))
     throw Error(fmt::format("equilibrium within {:g}: allowed are tolerances above 0", tolerance));
   check(seconds, target);
-  // an equilibrium has no history: while this object lives, viscous stresses count as relaxed
+  // An equilibrium has no history: viscous stresses count as relaxed during the lifetime of this object.
   struct Settling
   {
     explicit Settling(TimeStepper& s) : stepper(s) { stepper.settling_ = true; }
@@ -278,7 +278,7 @@ void TimeStepper::switch_effect(Effect effect, bool on)
   effects_switched({ effect });
 }
 
-// the discretisation's bounds must already be those of the running effects
+// The discretisation's bounds must already be those of the running effects.
 void TimeStepper::effects_switched(const std::vector<Effect>& effects)
 {
   backend_->effects_switched();

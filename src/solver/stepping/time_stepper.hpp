@@ -17,7 +17,7 @@ class TimeStepper final : public Solver
 public:
   using MakeBackend = std::function<std::unique_ptr<StepBackend>(const BackendInput&)>;
 
-  /// Throws Error as make_solver().
+  /// Throws Error like make_solver().
   TimeStepper(std::shared_ptr<const Model> model, const SolverSettings& settings, const MakeBackend& make_backend);
 
   void reset() override;
@@ -52,16 +52,16 @@ public:
   std::string description() const override { return traits_.description; }
 
 private:
-  /// State of the motion, except that of controller, ledger and backend.
+  /// State of the motion, without that of controller, ledger and backend.
   struct Motion
   {
     BoneMotionLimits bones;
     Controls controls;
     std::vector<float> activation;
     double time = 0;         // [s]
-    double latest_step = 0;  // [s]; 0: there was none
+    double latest_step = 0;  // [s]; 0: no step has been made
     bool diverged = false;
-    NodalVectors highest_mode{};  // empty until it is searched for
+    NodalVectors highest_mode{};  // mode of the highest frequency; empty until it is searched for
 
     void archive(ByteArchive& archive)
     {

@@ -17,12 +17,12 @@ namespace frontalis
 namespace
 {
 
-constexpr double with_settling = 1.5;  // rough ratio of wall times: history with settling over history alone
+// wall time of a history with settling, divided by that of the history alone; a rough figure
+constexpr double with_settling = 1.5;
 
 // A file consists of this signature, a hash of its content, and the content as bytes.
 const std::string signature = fmt::format("frontalis accuracy 2, motions of generation {}\n", motion_generation);
 
-// file extension of each type of result
 template <class T>
 constexpr const char* extension = ".motion";
 template <>
@@ -30,7 +30,7 @@ constexpr const char* extension<VariantCost> = ".cost";
 template <>
 constexpr const char* extension<VariantCheckpoint> = ".checkpoint";
 
-// reads a result; empty if the file is missing, incomplete or of another generation of motions
+// Reads a result. Returns nothing if the file is missing, incomplete or of another generation of motions.
 template <class T>
 std::optional<T> read(const std::string& key)
 {
@@ -106,8 +106,8 @@ std::string VariantBench::key_of(const AccuracySetting& setting, const Backend& 
          content_hash(fmt::format("{} {:.6f} {:.6f}", text, plan_.history.ramp, plan_.history.hold));
 }
 
-// The backend of a stored motion. For single precision, motions of other backends are accepted too, so that a folder
-// may come from a faster machine, such as one with a GPU, which always computes in single precision.
+// The backend of a stored motion. For single precision, motions of other backends are accepted too, so that a faster
+// machine may have filled the folder, for instance one with a GPU, which always computes in single precision.
 std::optional<Backend> VariantBench::kept_backend(const AccuracySetting& setting) const
 {
   std::vector<Backend> backends{ setting.backend };
@@ -124,13 +124,14 @@ bool VariantBench::is_reference(const AccuracySetting& setting) const
   return reference_ && name_of(setting, *reference_) == "standard";
 }
 
-// Whether a setting needs no further timing. The reference is never timed: it is slow and nobody would choose it.
+// Whether a setting needs no further timing. The reference is never timed, because it is slow and nobody would choose
+// it.
 bool VariantBench::is_timed(const AccuracySetting& setting, const std::optional<VariantCost>& cost) const
 {
   return is_reference(setting) || (cost && cost->machine == machine_.at(setting.backend) && !cost->is_noisy());
 }
 
-// updates the estimates for later variants with the wall seconds that a variant took
+// Updates the estimates for later variants with the wall seconds that this variant took.
 void VariantBench::learn(const AccuracySetting& setting, double wall)
 {
   const double relative = relative_time(setting);
@@ -196,7 +197,8 @@ std::size_t VariantBench::measure(const AccuracySetting& setting, const std::str
     const double build = wall_seconds() - begin, bytes = heap_bytes() - before;
     if (!motion)
     {
-      // The reference has no energy ledger: its balance is not reported, and a ledger would double its time on a GPU.
+      // The reference has no energy ledger, because its balance is not reported and a ledger would double its time on a
+      // GPU.
       motion = play_variant(model, setting, plan_.history, plan_.threads, !is_reference(setting),
                             { read<VariantCheckpoint>(key), [&](const VariantCheckpoint& c) { keep(key, c); } }, go_on);
       if (!motion)

@@ -10,7 +10,7 @@
 namespace frontalis
 {
 
-/// Thrown if the progress function of a study interrupts it.
+/// Thrown if the progress function of a study asks for an interruption.
 struct StudyInterrupted
 {
 };
@@ -19,13 +19,13 @@ struct MeasuredVariant
 {
   std::string name;
   AccuracySetting setting;
-  Backend played_by;  ///< backend of the motion; differs from the setting's if another machine stored the motion
+  Backend played_by;  ///< backend that computed the motion; not the setting's if another machine stored the motion
   VariantMotion motion;
   VariantCost cost;
 };
 
 /// Measures variants (settings of a study) one by one and reuses earlier results from the study's folder. The folder
-/// has a file each for a variant's motion, cost and checkpoint. Files are written completely or not at all.
+/// has one file each for a variant's motion, cost and checkpoint. Files are written completely or not at all.
 class VariantBench
 {
 public:
@@ -40,20 +40,20 @@ public:
 
   /// Estimated wall seconds for a setting; 0 if the folder has its results.
   double predicted(const AccuracySetting& setting) const;
-  /// Whether the budget has time for a setting. If not, left_out() increases by one.
+  /// Whether the remaining budget suffices for a setting. If not, left_out() increases by one.
   bool fits(const AccuracySetting& setting);
   int left_out() const { return left_out_; }
-  /// Announces the settings to be measured next, for the estimate of the remaining time.
+  /// Announces the settings that will be measured next, for the estimate of the remaining time.
   void expect(std::vector<AccuracySetting> settings) { pending_ = std::move(settings); }
 
-  /// Names the setting that is not timed.
+  /// Sets the reference's setting, which is not timed.
   void set_reference(const AccuracySetting& setting) { reference_ = setting; }
-  /// Time step of the standard setting with `time_step: element`, without scaled mass [s].
+  /// Critical time step [s] of the standard setting with `time_step: element` and without scaled mass.
   double critical_time_step() const { return critical_; }
   const std::string& machine() const { return machine_.at(plan_.standard.backend); }
 
 private:
-  /// Path of the setting's files without their extension.
+  /// Path of the setting's files, without the extension.
   std::string key_of(const AccuracySetting& setting, const Backend& backend) const;
   std::string key_of(const AccuracySetting& setting) const { return key_of(setting, setting.backend); }
   bool is_reference(const AccuracySetting& setting) const;
@@ -71,13 +71,13 @@ private:
   std::vector<MeasuredVariant> done_;
   std::map<std::string, std::size_t> index_;  // key to index in done_
   std::vector<AccuracySetting> pending_;
-  // estimates of wall seconds: of the shortest variant, per unit of relative_time(), and of timing a variant
+  // Estimates of wall seconds: of the shortest variant, per unit of relative_time(), and of timing a variant.
   double overhead_ = 0, rate_ = 0, timing_;
   int left_out_ = 0;
 };
 
-/// The figures of a variant. Errors refer to the plan's closed form, if there is one, otherwise to the reference's
-/// motion. With `average` (may be null) the row also has the error of averaged displacements.
+/// The figures of a variant. Errors are relative to the plan's closed form or, without one, to the reference's motion.
+/// With `average` (may be null) the row also has the error of averaged displacements.
 AccuracyRow row_of(const MeasuredVariant& measured, const AccuracyPlan& plan, const VariantMotion& reference,
                    const SkinAverage* average);
 
@@ -90,7 +90,7 @@ void estimate_reference_error(const AccuracyPlan& plan, const VariantBench& benc
 void note_orders(const AccuracyPlan& plan, const VariantBench& bench, AccuracyFindings& findings);
 
 /// Indices of the rows that are Pareto-optimal among those that a scene's profile can express, cheapest first. Errors
-/// below `floor` [m] count as equal, and a more expensive row must have an error that is at least 5 % smaller.
+/// below `floor` [m] count as equal. A more expensive row counts only if its error is at least 5 % smaller.
 std::vector<std::size_t> pareto_front(const std::vector<AccuracyRow>& rows, const AccuracySetting& standard,
                                       double floor);
 

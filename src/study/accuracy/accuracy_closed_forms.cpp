@@ -1,9 +1,11 @@
-// Bodies for studies of accuracy whose deformation is known in closed form. "cantilever" is a bar in plane strain. Its
-// ends are displaced like those of a beam under a force at its tip: Timoshenko & Goodier, Theory of Elasticity, article
-// 21, in the form of Augarde & Deeks, Finite Elements in Analysis and Design 44 (2008) 595. "stretched_block" is
-// neo-Hookean and stretched to 1.3 times its length with free sides. "active_bar" is the same block without loads; a
-// muscle without tension-length relation contracts it. The stretches of both blocks follow from the derivatives of the
-// strain energy mu/2 (J^(-2/3) I1 - 3) + kappa/2 (J - 1)^2 and are uniform, so that voxels represent them exactly.
+// Bodies for studies of accuracy whose deformation is known in closed form.
+// - "cantilever" is a bar in plane strain. Its ends are displaced like those of a beam under a force at its tip:
+// Timoshenko & Goodier, Theory of Elasticity, article 21, in the form of Augarde & Deeks, Finite Elements in Analysis
+// and Design 44 (2008) 595.
+// - "stretched_block" is neo-Hookean and stretched to 1.3 times its length, with free sides.
+// - "active_bar" is the same block without loads, which a muscle without tension-length relation contracts.
+// The stretches of both blocks follow from the derivatives of the strain energy mu/2 (J^(-2/3) I1 - 3) + kappa/2 (J -
+// 1)^2. They are uniform, so that voxels represent them exactly.
 
 #include "frontalis/error.hpp"
 #include "frontalis/study/accuracy.hpp"
@@ -20,7 +22,7 @@ constexpr double young = 30e3, poisson = 0.3, block_poisson = 0.49;             
 constexpr Point bar_size{ { 16e-3, 4e-3, 8e-3 } }, block_size{ { 16e-3, 8e-3, 8e-3 } };  // [m]
 constexpr double ramp = 0.1, hold = 0.05;                                                // [s]
 
-// A box of full voxels. The vertices of its skin (faces y = size and z = size) are the same for every voxel edge.
+// A box of full voxels. The vertices of its skin (faces y = size and z = size) do not depend on the voxel edge.
 Model box_model(const AccuracySetting& setting, const Point& size, double ratio)
 {
   const AccuracyProfile& profile = setting.profile;
@@ -54,7 +56,7 @@ Model box_model(const AccuracySetting& setting, const Point& size, double ratio)
   return model;
 }
 
-// first Piola-Kirchhoff stress [Pa] along the principal axis with stretch `a`; `b` and `c` are the other stretches
+// First Piola-Kirchhoff stress [Pa] along the principal axis with stretch `a`; `b` and `c` are the other stretches.
 double principal_stress(double a, double b, double c)
 {
   const double mu = shear_modulus(young, block_poisson), kappa = bulk_modulus(young, block_poisson);
@@ -89,7 +91,7 @@ ClosedForm closed_form(const std::string& name, std::vector<double> edges,
   return form;
 }
 
-// a block that `drive` stretches uniformly along x; `along`: its length over the length at rest
+// A block that `drive` stretches uniformly along x; `along` is its length divided by the length at rest.
 ClosedForm uniform(const std::string& name, double along, const std::function<void(Model&)>& drive)
 {
   const auto make = [drive](const AccuracySetting& setting)
@@ -105,7 +107,7 @@ ClosedForm uniform(const std::string& name, double along, const std::function<vo
   return closed_form(name, { 4e-3, 2e-3, 1e-3 }, make, exact);
 }
 
-// displacement [m] of a beam in plane strain (x, z) whose end a shear force lowers by a thousandth of the length
+// Displacement [m] of a beam in plane strain (x, z), whose end a shear force lowers by a thousandth of the length.
 Point beam(const Point& p)
 {
   const double L = bar_size[0], D = bar_size[2], x = p[0], z = p[2] - 0.5 * D, nu = poisson / (1 - poisson);

@@ -1,4 +1,4 @@
-// the errors of variants against the reference or a closed form, the Pareto front, and the choice of a setting from it
+// Compares variants with the reference or a closed form, finds the Pareto front, and chooses a setting from it.
 
 #include "study/accuracy/accuracy_bench.hpp"
 
@@ -14,7 +14,7 @@ namespace frontalis
 namespace
 {
 
-// ratio of error to displacement below which incomplete settling and rounding dominate, so that no order is observed
+// Below this ratio of error to displacement, incomplete settling and rounding dominate, so that no order is observed.
 constexpr double exactly_represented = 1e-3;
 
 const AccuracyRow& last_of_front(const AccuracyFindings& findings)
@@ -62,7 +62,7 @@ AccuracyRow row_of(const MeasuredVariant& measured, const AccuracyPlan& plan, co
 void estimate_reference_error(const AccuracyPlan& plan, const VariantBench& bench, const SkinAverage& average,
                               AccuracyFindings& findings)
 {
-  // solutions with the reference's setting at each voxel edge, coarse to fine
+  // Solutions with the reference's setting at each voxel edge, from coarse to fine.
   std::vector<const MeasuredVariant*> levels;
   for (const double edge : plan.edges)
     if (const MeasuredVariant* known = bench.find(reference_setting(plan.standard, edge));

@@ -1,4 +1,4 @@
-// differences between skins, and their order of convergence in the voxel edge
+// Finds differences between skins, and their order of convergence in the voxel edge.
 
 #include "study/accuracy/accuracy_run.hpp"
 
@@ -18,7 +18,7 @@ namespace
 using Position = std::array<float, 3>;
 using Points = std::vector<Position>;
 
-// difference between the displacements of point p in two motions [m]
+// Difference between the displacements of point p in two motions [m].
 double displacement_difference(const Points& a, const Points& a_rest, const Points& b, const Points& b_rest,
                                std::size_t p)
 {
@@ -32,7 +32,7 @@ double displacement_difference(const Points& a, const Points& a_rest, const Poin
   return std::sqrt(square);
 }
 
-constexpr double reach = 3;  // radius at which the Gaussian is cut off, in standard deviations
+constexpr double reach = 3;  // radius beyond which the Gaussian is cut off, in standard deviations
 
 using Cube = std::array<std::int64_t, 3>;
 
@@ -118,7 +118,7 @@ VariantMotion exact_motion(const VariantMotion& like, const std::function<Vector
 
 double observed_order(const std::array<double, 3>& edges, double coarse, double fine)
 {
-  // coarse / fine = (h1^p - h2^p) / (h2^p - h3^p); the right side increases with p
+  // The order p solves coarse / fine = (h1^p - h2^p) / (h2^p - h3^p), whose right side increases with p.
   const auto excess = [&](double p)
   {
     return (std::pow(edges[0], p) - std::pow(edges[1], p)) * fine -
@@ -136,7 +136,8 @@ double richardson(double before, double finest, double difference, double order)
 SkinAverage::SkinAverage(const VariantMotion& reference, double deviation) : weights_(reference.area.size())
 {
   const auto& rest = reference.phases.at(0).vertices;
-  // the cubes are as large as the cut-off radius, so all neighbours of a vertex are in its cube or the 26 around it
+  // The cubes are as large as the cut-off radius, so that all neighbours of a vertex are in its cube or the 26 around
+  // it.
   std::map<Cube, std::vector<std::size_t>> cubes;
   for (std::size_t v = 0; v < weights_.size(); ++v)
     cubes[cube_of(rest[v], reach * deviation)].push_back(v);

@@ -1,4 +1,4 @@
-// the findings of a study of accuracy as a table, a plot, a text and profiles
+// Presents the findings of a study of accuracy as a table, a plot, a text and profiles.
 
 #include "study/accuracy/accuracy_run.hpp"
 
@@ -16,7 +16,7 @@ namespace
 
 double mm(double metres) { return 1e3 * metres; }
 
-// a curve of the rows that have an error and a cost, cheapest first; `label` returns the text beside a point
+// A curve of the rows that have an error and a cost, cheapest first. `label` returns the text beside a point.
 Plot::Curve curve_of(
     const AccuracyFindings& findings, std::vector<std::size_t> rows, const std::string& name, Plot::Style style,
     const std::function<std::string(const AccuracyRow&)>& label = [](const AccuracyRow&) { return std::string(); })
@@ -109,7 +109,7 @@ Plot accuracy_plot(const AccuracyFindings& findings, const std::string& title)
       plot.curves.push_back(std::move(curve));
   }
   plot.curves.push_back(curve_of(findings, findings.front, "Pareto front", Plot::Style::strong));
-  // points are numbered; the legend names their settings
+  // Points are numbered; the legend names their settings.
   for (std::size_t p = 0; p < findings.front.size(); ++p)
   {
     const AccuracyRow& row = findings.rows[findings.front[p]];
@@ -132,7 +132,7 @@ Plot accuracy_plot(const AccuracyFindings& findings, const std::string& title)
   std::size_t longest = 0;
   for (const Plot::Curve& curve : plot.curves)
     longest = std::max(longest, curve.name.size());
-  // a negative width corrects gnuplot, which overestimates the width of the legend's text
+  // A negative width compensates gnuplot's overestimate of the width of the legend's text.
   plot.key = fmt::format("below Left reverse maxrows 10 maxcols 3 width {} font ',12'", longest > 24 ? -8 : -4);
   return plot;
 }

@@ -1,4 +1,4 @@
-// simulates one variant and measures the cost of its steps
+// Simulates one variant and measures the cost of its steps.
 
 #include "study/accuracy/accuracy_run.hpp"
 
@@ -50,7 +50,7 @@ SkinPhase read_skin(Solver& solver, const Model& model)
   return { std::move(skin.vertices), std::move(skin.landmarks) };
 }
 
-// longest edge of the model's box [m]; a larger displacement of the skin counts as divergence
+// Longest edge of the model's box [m]. A larger displacement of the skin counts as divergence.
 double largest_size(const Model& model)
 {
   return std::max(
@@ -91,7 +91,7 @@ std::string machine_of(const Solver& solver, int threads)
 
 double heap_bytes()
 {
-  const auto info = mallinfo2();  // the figures cover all arenas
+  const auto info = mallinfo2();  // covers all arenas of the heap
   return static_cast<double>(info.uordblks) + static_cast<double>(info.hblkhd);
 }
 
@@ -122,7 +122,7 @@ std::optional<VariantMotion> play_variant(const std::shared_ptr<const Model>& mo
     }
     catch (const Error&)
     {
-      // the checkpoint is from another solver, so the motion starts from rest
+      // The checkpoint belongs to another solver, so that the motion starts from rest.
     }
     if (motion.phases.empty())
       add_phase();
@@ -136,7 +136,7 @@ std::optional<VariantMotion> play_variant(const std::shared_ptr<const Model>& mo
       const double end = wall_seconds();
       next_checkpoint = end + std::max(seconds_per_checkpoint, (end - begin) / share_of_checkpoints);
     };
-    // large models have more slices, since an interruption takes effect at the end of a slice
+    // Large models have more slices, because an interruption takes effect at the end of a slice.
     const std::int64_t slices_per_phase = 10 * (1 + static_cast<std::int64_t>(model->voxels.size()) / 200000);
     const double length = history.ramp + history.hold;
     const std::array<double, 4> ends{ 0, 0.5 * history.ramp, history.ramp, length };
@@ -161,21 +161,21 @@ std::optional<VariantMotion> play_variant(const std::shared_ptr<const Model>& mo
       if (interrupted)
         return std::nullopt;
     }
-    // settling has no checkpoints; an interrupted one starts again from here
+    // Settling has no checkpoints. If it is interrupted, it starts again from here.
     state.solver = solver->pack();
     const VariantCheckpoint played = state;
     motion.steps /= length;
     const EnergyLedger ledger = wants_ledger ? solver->ledger() : EnergyLedger();
     motion.energy = ledger.largest > 0 ? std::abs(ledger.imbalance()) / ledger.largest : wants_ledger ? 0 : NAN;
 
-    // the model counts as settled when its skin no longer moves, even if nodes inside move
+    // The model counts as settled when its skin no longer moves, even if nodes inside still move.
     VariantMotion last;
     last.area = motion.area;
     last.phases = { motion.phases[0], motion.phases.back() };
     double last_check = 0;  // simulated seconds of settling
     bool interrupted = false;
     const double settling = 2 * length / model->time_scaling;
-    // the guard may return to an earlier state; then settling starts again and `seconds` decreases
+    // The guard may return to an earlier state. Settling then starts again, and `seconds` decreases.
     Guard guard(*solver, model);
     const Equilibrium found = guard.settle(controls_at(*solver, history, length), 1e-4, settling,
                                            [&](const Equilibrium& equilibrium)
@@ -199,7 +199,7 @@ std::optional<VariantMotion> play_variant(const std::shared_ptr<const Model>& mo
     motion.residual = found.residual;
     add_phase();
   }
-  // other errors do not depend on the setting and must not be stored as its faults
+  // Other errors do not depend on the setting and must not be stored as its faults.
   catch (const Diverged& error)
   {
     motion.fault = std::string("unstable: ") + error.what();
@@ -221,10 +221,11 @@ VariantCost time_variant(const std::shared_ptr<const Model>& model, const Accura
   cost.machine = machine_of(*solver, threads);
   Controls controls = solver->controls();
   controls.activation = history.activation;
-  // processor time, which excludes other programs, is meaningful only for a single thread
+  // Processor time excludes the time of other programs, but is meaningful only for a single thread.
   const bool alone = works_alone(settings);
   const double used = processor_seconds(), begin = wall_seconds();
-  // be patient: while activations grow, frequent estimates of the time step would distort the cost per step
+  // The last argument lets the solvers reach their controls: while activations grow, frequent estimates of the time
+  // step would distort the cost per step.
   const auto turns = time_in_turn({ { solver.get(), controls } }, seconds, alone, 8 * seconds);
   const bool shared = setting.backend == "cpu" && !alone;
   cost.processors = shared ? (processor_seconds() - used) / (wall_seconds() - begin) / thread_count(threads) : 1;

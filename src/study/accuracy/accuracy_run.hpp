@@ -24,14 +24,14 @@ struct VariantMotion
   std::vector<SkinPhase> phases;  ///< skins at rest, mid-ramp, end of ramp, end of history, settled
   std::vector<float> area;        ///< area of the skin at rest that each vertex represents [m2]
   double steps = 0;               ///< number of time steps per second of the activation history
-  double energy = 0;              ///< imbalance of the energy ledger over its largest term
-  double residual = 0;            ///< remaining motion over the displacement, as in Solver::settle()
+  double energy = 0;              ///< imbalance of the energy ledger divided by its largest term
+  double residual = 0;            ///< remaining motion divided by the displacement, as in Solver::settle()
   double voxels = 0;
 
   void archive(ByteArchive& archive);
 };
 
-/// An interrupted motion.
+/// The state of an interrupted motion.
 struct VariantCheckpoint
 {
   VariantMotion motion;     ///< the motion so far; `steps` is the total number of steps
@@ -44,18 +44,20 @@ struct VariantCheckpoint
 /// The machine on which costs are measured: processor or device, and number of threads.
 std::string machine_of(const Solver& solver, int threads);
 
-using GoOn = std::function<bool(double done)>;  ///< receives the completed fraction, 0..1; returns false to interrupt
+/// receives the completed fraction, 0..1; returns false to interrupt the motion
+using GoOn = std::function<bool(double done)>;
 
-/// The checkpoint to resume a motion from, and a function that stores further ones: about one per minute of wall time,
-/// and one if the motion is interrupted.
+/// The checkpoint from which to resume a motion, and a function that stores further ones, about one per minute of wall
+/// time and one if the motion is interrupted.
 struct Checkpoints
 {
   std::optional<VariantCheckpoint> last;
   std::function<void(const VariantCheckpoint&)> keep;
 };
 
-/// Simulates the history and settling. Returns nothing if `go_on` interrupted it. An unstable motion is returned with
-/// its fault. Without `ledger`, its `energy` is NaN. A resumed motion has bitwise the result of an uninterrupted one.
+/// Simulates the history and settling. Returns nothing if `go_on` has interrupted the motion. An unstable motion is
+/// returned with its fault. Without `ledger`, `energy` of the result is NaN. A resumed motion has bitwise the same
+/// result as an uninterrupted one.
 std::optional<VariantMotion> play_variant(const std::shared_ptr<const Model>& model, const AccuracySetting& setting,
                                           const ActivationHistory& history, int threads, bool ledger,
                                           const Checkpoints& checkpoints, const GoOn& go_on);
@@ -64,13 +66,13 @@ std::optional<VariantMotion> play_variant(const std::shared_ptr<const Model>& mo
 VariantCost time_variant(const std::shared_ptr<const Model>& model, const AccuracySetting& setting,
                          const ActivationHistory& history, int threads, double seconds);
 
-/// Allocated bytes on the heap of this program.
+/// Bytes that this program has allocated on the heap.
 double heap_bytes();
 
-/// Differences between the displacements of two motions, per phase. Throws Error if they do not have the same skin.
+/// Differences between the displacements of two motions, one per phase. Throws Error if they do not have the same skin.
 std::vector<SkinError> skin_errors(const VariantMotion& found, const VariantMotion& exact);
 SkinError worst(const std::vector<SkinError>& errors);
-/// The first function returns the rest and settled phases of a motion. The second replaces the settled displacements
+/// settled_part() returns the rest and settled phases of a motion. exact_motion() replaces the settled displacements
 /// [m] by a function of the position at rest [m].
 VariantMotion settled_part(const VariantMotion& motion);
 VariantMotion exact_motion(const VariantMotion& like, const std::function<Vector3(const Vector3&)>& displacement);
@@ -86,7 +88,7 @@ public:
   /// motions must have the rest positions of the reference.
   SkinAverage(const VariantMotion& reference, double deviation);
 
-  /// The motion with averaged displacements; landmarks stay as they are.
+  /// The motion with averaged displacements; landmarks are not averaged.
   VariantMotion of(const VariantMotion& motion) const;
   /// Error against the averaged reference in the worst phase. Throws Error if skin_errors() does.
   SkinError error(const VariantMotion& motion) const;
@@ -97,9 +99,10 @@ private:
 };
 
 /// The order p for which errors C h^p explain the differences between solutions at three edges h, coarse to fine.
-/// `coarse`: difference between the first and the second; `fine`: between the second and the third. NaN: no p in 0..8.
+/// `coarse`: difference between the first and the second; `fine`: between the second and the third. NaN if no p in 0..8
+/// does.
 double observed_order(const std::array<double, 3>& edges, double coarse, double fine);
-/// Whether the order is good enough for richardson().
+/// Whether the order is plausible enough for richardson().
 inline bool is_credible(double order) { return order >= 0.5 && order <= 2.5; }
 /// Richardson's estimate of the error at edge `finest`, from the difference to the solution at edge `before`.
 double richardson(double before, double finest, double difference, double order);
@@ -107,15 +110,15 @@ double richardson(double before, double finest, double difference, double order)
 /// Settings that differ from the standard setting in one knob.
 struct Sweep
 {
-  std::string knob, words;  ///< names on the command line and in plots
+  std::string knob, words;  ///< name on the command line, and words in plots
   std::vector<AccuracySetting> settings;
 };
 /// `critical`: time step of the standard setting without scaled mass [s].
 std::vector<Sweep> knob_sweeps(const AccuracyPlan& plan, double critical);
 /// The combinations of knobs that are measured at one voxel edge.
 std::vector<AccuracySetting> combinations(const AccuracyPlan& plan, double edge, double critical);
-/// The most accurate setting at a voxel edge: assumed strain and no scaled mass. Its time step is estimated from
-/// the assembled model; the study checks the effect of halving it.
+/// The most accurate setting at a voxel edge: assumed strain and no scaled mass. Its time step is estimated from the
+/// assembled model; the study checks the effect of halving that step.
 AccuracySetting reference_setting(const AccuracySetting& standard, double edge);
 /// The differences of a setting from the standard one in words; "standard" if there are none.
 std::string name_of(const AccuracySetting& setting, const AccuracySetting& standard);

@@ -1,4 +1,4 @@
-// a study of accuracy: the reference, then each knob, then combinations of knobs
+// Runs a study of accuracy: the reference first, then each knob, then combinations of knobs.
 
 #include "study/accuracy/accuracy_bench.hpp"
 
@@ -17,7 +17,7 @@ namespace frontalis
 namespace
 {
 
-constexpr double averaged_voxels = 1.5;  // standard deviation of the averaging, in voxels of the standard setting
+constexpr double averaged_voxels = 1.5;  // standard deviation of the average, in voxels of the standard setting
 
 class Study
 {
@@ -40,7 +40,7 @@ private:
     return row_of(measured, plan_, motion_of(reference_), average_ ? &*average_ : nullptr);
   }
   AccuracySetting reference_at(double edge) const { return reference_setting(plan_.standard, edge); }
-  // number of voxel edges for variants, without the edge that is for the reference only
+  // Number of voxel edges for variants. Without a closed form the last edge is for the reference only.
   std::size_t variant_levels() const { return plan_.edges.size() - (plan_.exact ? 0 : 1); }
   const VariantMotion& motion_of(std::size_t variant) const { return bench_.done()[variant].motion; }
   bool is_too_fine(const AccuracySetting& setting) const
@@ -55,8 +55,8 @@ private:
   AccuracyFindings findings_;
 };
 
-// Measures the reference's setting from the largest to the smallest voxel edge. The times of earlier edges predict
-// those of later edges, which are left out if the budget does not suffice.
+// Measures the reference's setting from the largest to the smallest voxel edge. The wall times at earlier edges predict
+// those at later ones, which are left out if the budget does not suffice.
 void Study::choose_reference()
 {
   auto& edges = plan_.edges;
@@ -127,7 +127,7 @@ void Study::measure_knobs()
   }
 }
 
-// measures at each voxel edge the combinations that were not clearly worse than another one at the previous edge
+// At each voxel edge, measures the combinations that were not clearly worse than another one at the previous edge.
 void Study::measure_combinations()
 {
   std::vector<bool> promising(combinations(plan_, plan_.edges[0], bench_.critical_time_step()).size(), true);
@@ -156,7 +156,7 @@ void Study::measure_combinations()
   }
 }
 
-// notes how much double precision and half the time step change the result at the coarsest edge
+// Notes how much double precision and half the time step change the result at the coarsest edge.
 void Study::check_reference()
 {
   if (plan_.exact)
@@ -230,7 +230,7 @@ AccuracyFindings Study::run()
         "Motions of {} settings were computed earlier by backend {} and read from the folder.", count, backend));
   if (!plan_.exact)
   {
-    // the reference has no error against itself and is not a setting to choose
+    // The reference has no error against itself and is not a setting to choose.
     AccuracyRow& reference = findings_.rows[reference_];
     reference.name = "reference: " + reference.name;
     reference.error = reference.settled = {};

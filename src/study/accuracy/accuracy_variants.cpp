@@ -1,4 +1,4 @@
-// the settings that a study measures, and their names
+// Lists the settings that a study measures, and names them.
 
 #include "study/accuracy/accuracy_run.hpp"
 
@@ -14,7 +14,7 @@ namespace frontalis
 namespace
 {
 
-// rounds to three significant digits, enough for the target of a time step
+// Rounds to three significant digits, which suffice for the target of a time step.
 double rounded(double value)
 {
   const double unit = std::pow(10, std::floor(std::log10(value)) - 2);
@@ -68,18 +68,18 @@ std::vector<AccuracySetting> sweep(const AccuracySetting& standard, const std::v
 
 }  // namespace
 
-// the sweeps are in the order of the command line's help
+// The sweeps are in the order of the command line's help.
 std::vector<Sweep> knob_sweeps(const AccuracyPlan& plan, double critical)
 {
   const AccuracySetting& s = plan.standard;
   const bool quick = plan.quick;
   using Numbers = std::vector<double>;
   using Names = std::vector<std::string>;
-  // without a closed form, the last edge is only for the reference
+  // Without a closed form, the last edge is only for the reference.
   const Numbers edges(plan.edges.begin(), plan.edges.end() - (plan.exact || plan.edges.empty() ? 0 : 1));
-  // the GPU always computes in single precision
+  // The GPU always computes in single precision.
   const Names precisions = s.backend == "cuda" ? Names{} : Names{ "single", "compensated", "double" };
-  // bodies with a closed form have no bones, and the GPU does not attach nodes at the surface of bones
+  // Bodies with a closed form have no bones, and the GPU does not attach nodes at the surface of bones.
   const Numbers attached_edges = plan.exact || s.backend == "cuda" ? Numbers{} : edges;
   std::vector<Backend> backends = available_backends();
   if (quick)
@@ -192,7 +192,7 @@ std::string name_of(const AccuracySetting& setting, const AccuracySetting& stand
 double relative_time(const AccuracySetting& setting)
 {
   const AccuracyProfile& p = setting.profile;
-  // the factors are rough, because they only predict the duration of a study
+  // The factors are rough, because they only predict the duration of a study.
   double time = 1 / (p.voxel[0] * p.voxel[1] * p.voxel[2] * std::min({ p.voxel[0], p.voxel[1], p.voxel[2] }));
   time *= 0.9 / p.time_step_share / setting.time_scaling;
   time *= p.integration == "selective_reduced" ? 2.5 : p.assumed_strain ? 1.4 : 1;

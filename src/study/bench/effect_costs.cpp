@@ -11,7 +11,7 @@ namespace frontalis
 namespace
 {
 
-// selects the time step that is cheapest to compute, since the cost of steps is compared and not their length
+// Selects the time step that is cheapest to compute, because the cost of steps is compared and not their length.
 Model with_cheap_time_step(Model model)
 {
   model.time_step_estimate = TimeStepEstimate::element;
@@ -39,7 +39,7 @@ Controls active_controls(const Solver& solver)
 
 constexpr std::int32_t length = 64, depth = 40;  // size of the block of measure_presence() [voxels]
 
-// gives an effect to a fraction of the voxels, or of the nodes of the face z = 0
+// Gives an effect to a fraction of the voxels, or of the nodes of the face z = 0.
 void give(Model& model, Effect effect, double share)
 {
   const auto rows = static_cast<std::int32_t>(std::lround(share * depth));
@@ -61,7 +61,7 @@ void give(Model& model, Effect effect, double share)
   }
   if (effect == Effect::sliding || effect == Effect::friction)
   {
-    // the cost of friction is measured in addition to that of sliding, so all nodes of the face slide
+    // The cost of friction is measured in addition to that of sliding, so that all nodes of the face slide.
     const std::int32_t sliding_rows = effect == Effect::friction ? depth + 1 : rows;
     const std::int32_t rough_rows = effect == Effect::friction ? rows : 0;
     const auto slide_between = [&](const char* floor, std::int32_t first, std::int32_t last)
@@ -108,7 +108,7 @@ Model plain_model(const Model& model)
   Model plain = without(model, all);
   for (Material& material : plain.materials)
   {
-    // keeps the bulk modulus; Poisson's ratio becomes 0.49, which does not affect the cost
+    // The bulk modulus is kept. Poisson's ratio becomes 0.49, which does not affect the cost.
     if (material.law != Law::neo_hookean)
       material.parameters[0] = material.parameters[1] / 50;
     material.law = Law::neo_hookean;
@@ -126,7 +126,7 @@ EffectCosts measure_effects(const std::shared_ptr<const Model>& model, const Sol
                                 plain = solver_of(plain_model(*model), settings);
   const Controls rest = whole->controls(), active = active_controls(*whole);
 
-  // Time per step that an effect adds. A model without rigid nodes would fly away, so the cost of rigid nodes is
+  // Time per step that an effect adds. A model without rigid nodes would fly away, so that the cost of rigid nodes is
   // measured at rest and without the effects that cause motion.
   const auto cost_of = [&](Effect effect) -> Spread
   {
@@ -172,7 +172,8 @@ std::vector<double> presence_shares() { return { 0, 0.1, 0.5, 1 }; }
 
 std::vector<PresenceCost> measure_presence(const SolverSettings& settings, double seconds)
 {
-  // the addresses of a solver's arrays change its time per step by about 1 %, so each solver is created several times
+  // The addresses of a solver's arrays change its time per step by about 1 %, so that each solver is created several
+  // times.
   constexpr int rounds = 4;
   const StepTimer timer = step_timer(settings, seconds / rounds);
   const std::vector<double> shares = presence_shares();

@@ -13,7 +13,7 @@ namespace frontalis
 namespace
 {
 
-// seconds per step over about `steps` steps; a GPU solver queues steps, and reading its skin waits for them
+// Seconds per step over about `steps` steps. A GPU solver queues steps; reading its skin waits for them.
 double time_steps(Solver& solver, const Controls& controls, double steps, bool processor_time)
 {
   SkinState skin;
@@ -26,7 +26,7 @@ double time_steps(Solver& solver, const Controls& controls, double steps, bool p
   return (now() - start) / static_cast<double>(std::max<std::int64_t>(1, solver.profile().steps - before));
 }
 
-// number of steps that take about `seconds`. Tries ever more steps, since a coarse clock may show 0 for a few.
+// Number of steps that take about `seconds`. Tries ever more steps, because a coarse clock may show 0 for a few.
 double steps_for(const TimedSolver& timed, double seconds, bool processor_time)
 {
   for (double steps = 64;; steps *= 2)
@@ -79,7 +79,7 @@ double processor_seconds()
 
 StepTimes time_in_turn(const std::vector<TimedSolver>& wanted, double seconds, bool processor_time, double patience)
 {
-  constexpr double burst = 0.02;  // wall time of each solver per turn [s]
+  constexpr double burst = 0.02;  // wall time of each solver in each turn [s]
   std::vector<TimedSolver> solvers = wanted;
   std::vector<double> steps;
   for (TimedSolver& timed : solvers)

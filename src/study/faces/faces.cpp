@@ -13,14 +13,14 @@ namespace
 {
 
 constexpr double frame_seconds = 0.01;
-constexpr double settled_share = 0.03;  // of the way, within which a landmark has settled
-constexpr double least_way = 0.5e-3;    // [m] settling is told of landmarks that move farther
-constexpr double still_way = 1e-3;      // [m] that landmarks which people do not move may move
+constexpr double settled_share = 0.03;  // fraction of the final displacement within which a landmark has settled
+constexpr double least_way = 0.5e-3;    // a settling time is found only for landmarks that move farther [m]
+constexpr double still_way = 1e-3;      // allowed motion of landmarks that do not move in people [m]
 constexpr double largest_angle = 25 * 3.14159265358979323846 / 180;
 
 using Places = std::vector<std::array<float, 3>>;
 
-// displacement of a landmark between two frames, outward from the midline on the side that its name has
+// Displacement of a landmark between two frames: forward, outward from the midline on the side in its name, up [m].
 std::array<double, 3> moved(const Places& rest, const Places& now, std::size_t landmark, const std::string& name)
 {
   std::array<double, 3> way{};
@@ -39,7 +39,7 @@ double dot(const std::array<double, 3>& a, const std::array<double, 3>& b)
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-// time after which a landmark stays close to its last place [s]; NaN if it hardly moves
+// Time after which a landmark stays close to its last position [s]; NaN if it hardly moves.
 double settling_time(const std::vector<Places>& frames, std::size_t landmark)
 {
   const double way = length(moved(frames.front(), frames.back(), landmark, {}));
@@ -51,7 +51,7 @@ double settling_time(const std::vector<Places>& frames, std::size_t landmark)
   return static_cast<double>(frame) * frame_seconds;
 }
 
-// the landmarks with a name, or with it and a side
+// The landmarks that have this name, or this name with a side.
 std::vector<std::size_t> landmarks_called(const Model& model, const std::string& name)
 {
   std::vector<std::size_t> found;

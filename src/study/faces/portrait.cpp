@@ -15,10 +15,10 @@ namespace frontalis
 namespace
 {
 
-constexpr int samples = 2;        // per pixel along each axis
-constexpr double azimuth = 0.28;  // [rad] of the view, from straight ahead to the subject's left
-constexpr double distance = 5;    // [m] of the camera: as good as parallel projection
-constexpr double margin = 1.08;   // of the picture, over the skin at rest
+constexpr int samples = 2;        // number of samples per pixel along each axis
+constexpr double azimuth = 0.28;  // angle of the view, from straight ahead to the subject's left [rad]
+constexpr double distance = 5;    // distance of the camera, so large that the projection is nearly parallel [m]
+constexpr double margin = 1.08;   // size of the picture divided by that of the skin at rest
 
 }  // namespace
 
@@ -48,7 +48,7 @@ std::vector<std::uint8_t> Portrait::draw(const SkinState& skin, const Controls& 
 void write_contact_sheet(const std::vector<std::pair<std::string, std::vector<std::uint8_t>>>& portraits, int columns,
                          const std::string& path)
 {
-  constexpr int title = 22;  // [pixels]
+  constexpr int title = 22;  // height of a title [pixels]
   const int count = static_cast<int>(portraits.size());
   columns = std::min(columns, count);
   const int rows = (count + columns - 1) / columns;

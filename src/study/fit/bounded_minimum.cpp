@@ -16,7 +16,7 @@ using Eigen::VectorXd;
 
 constexpr double relative_tolerance = 1e-12;  // relative size of gradients that count as zero
 
-// the minimum over the free variables, with the other variables fixed
+// The minimum over the free variables, with the other variables fixed.
 VectorXd minimum_of_free(const MatrixXd& h, const VectorXd& g, const VectorXd& x, const std::vector<Index>& free)
 {
   VectorXd held = x;
@@ -38,13 +38,14 @@ VectorXd bounded_minimum(const MatrixXd& h, const VectorXd& g, const VectorXd& l
     if (lower[i] < x[i] && x[i] < upper[i])
       free.push_back(i);
   const double zero = relative_tolerance * std::max(g.cwiseAbs().maxCoeff(), h.diagonal().maxCoeff());
-  // each round frees one variable or ends; the limit is for variables that rounding lets alternate between their bounds
+  // Each round frees one variable or ends the search. The limit serves variables that alternate between their bounds
+  // because of rounding errors.
   for (Index round = 0; round < 10 * count; ++round)
   {
     while (!free.empty())
     {
       const VectorXd best = minimum_of_free(h, g, x, free);
-      // move towards `best` until the first variable reaches its limit, and hold this variable there
+      // Move towards `best` until the first variable reaches its limit, and hold this variable there.
       double share = 1;
       Index first = -1;
       for (const Index i : free)
@@ -64,7 +65,7 @@ VectorXd bounded_minimum(const MatrixXd& h, const VectorXd& g, const VectorXd& l
       x[first] = best[first] < lower[first] ? lower[first] : upper[first];
       free.erase(std::find(free.begin(), free.end(), first));
     }
-    // free the held variable that gains most by leaving its limit
+    // Free the held variable that gains most by leaving its limit.
     const VectorXd descent = g - h * x;
     double most = zero;
     Index next = -1;

@@ -19,8 +19,9 @@ namespace
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr double determined_share = 0.05;  // largest standard deviation of a determined unknown, over its range
-constexpr double smallest_change = 1e-3;   // change of an unknown over its range, below which the refinement ends
+constexpr double determined_share = 0.05;  // largest standard deviation of a determined unknown, divided by its range
+// refinement ends if unknowns change by less than this fraction of their range
+constexpr double smallest_change = 1e-3;
 
 std::size_t index_of_landmark(const Model& model, const std::string& name)
 {
@@ -31,7 +32,7 @@ std::size_t index_of_landmark(const Model& model, const std::string& name)
   return static_cast<std::size_t>(found - model.landmarks.begin());
 }
 
-// the displacements from rest that the request gives; NaN for coordinates that it does not give
+// The displacements from rest that the request gives; NaN for coordinates that it does not give.
 VectorXd target_vector(const Model& model, const FitRequest& request, const VectorXd& rest)
 {
   VectorXd out = VectorXd::Constant(rest.size(), NAN);
@@ -50,7 +51,7 @@ std::array<double, 3> place_in(const VectorXd& places, std::size_t landmark)
   return { { places[first], places[first + 1], places[first + 2] } };
 }
 
-// distance in the coordinates that the target gives
+// Distance in the coordinates that the target gives [m].
 double distance(const std::array<double, 3>& a, const std::array<double, 3>& b)
 {
   double sum = 0;

@@ -15,7 +15,7 @@ namespace
 
 constexpr double millimetre = 1e-3;
 
-// reads three coordinates [mm]; null means a free coordinate
+// Reads three coordinates [mm]; null means a free coordinate.
 std::array<double, 3> coordinates_from(const YAML::Node& node)
 {
   std::array<double, 3> out{};

@@ -18,11 +18,12 @@ namespace
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr double tolerance = 1e-3;           // largest remaining motion in equilibrium, over the displacement
+constexpr double tolerance = 1e-3;           // largest remaining motion in equilibrium, divided by the displacement
 constexpr double sufficient_motion = 5e-6;   // remaining motion of the skin that always counts as equilibrium [m]
 constexpr double shortest_relaxation = 0.1;  // simulated time before sufficient_motion is tested [s]
 constexpr double longest_relaxation = 5;     // simulated time within which a face must find its equilibrium [s]
-constexpr double interior_share = 0.1;       // least distance from the limits of an interior rest value, over the range
+// a rest value is interior if it is at least this fraction of the range from both limits
+constexpr double interior_share = 0.1;
 
 std::vector<double> numbers_of(const VectorXd& vector) { return { vector.begin(), vector.end() }; }
 
@@ -34,7 +35,7 @@ VectorXd vector_of(const nlohmann::json& json, std::size_t size)
   return Eigen::Map<const VectorXd>(numbers.data(), static_cast<Index>(size));
 }
 
-// A stored influence is valid only for the same scene, landmarks and generation of motions.
+// Identifies a stored influence, which is valid only for the same scene, landmarks and generation of motions.
 nlohmann::ordered_json heading_of(const Model& model)
 {
   return { { "motion_generation", motion_generation },
@@ -42,7 +43,7 @@ nlohmann::ordered_json heading_of(const Model& model)
            { "landmarks", model.landmarks } };
 }
 
-// reads the influence from a file; empty if the file is missing, damaged or of another model
+// Reads the influence from a file; empty if the file is missing, damaged or of another model.
 Influence read_influence(const std::string& path, const Model& model)
 {
   Influence out;
@@ -85,12 +86,12 @@ void keep_influence(const std::string& path, const Model& model, const Influence
   }
   catch (const Error&)
   {
-    // without the file, only the next fit takes longer
+    // A file that cannot be written is no error: only the next fit takes longer.
   }
 }
 
-// the values at which to measure: both limits if the unknown rests well between them, otherwise the farther limit and
-// the middle between rest and this limit
+// The values at which to measure an unknown: both limits if the rest value is well between them; otherwise the farther
+// limit and the middle between the rest value and this limit.
 std::array<double, 2> measured_at(const Unknown& unknown, double rest)
 {
   const double below = rest - unknown.lower, above = unknown.upper - rest;
@@ -148,7 +149,7 @@ VectorXd ForwardRuns::settle(const std::map<std::string, double>& values)
   solver_->reset();
   guard_.restart();
   const SkinState start = skin();
-  // a face that hardly moves, such as one at rest, is in equilibrium although its remaining motion is relatively large
+  // A face that hardly moves, such as one at rest, is in equilibrium although its remaining motion is relatively large.
   const auto moves = [&](const Equilibrium& now)
   {
     watch_(stage_, done_);
@@ -248,7 +249,8 @@ InfluenceLaw::InfluenceLaw(const Model& model, const Influence& influence, const
     const std::string& name = unknowns[static_cast<std::size_t>(i)].name;
     const auto& [at, displaced] = influence.columns.at(name);
     rest_[i] = rest_value(model, name);
-    // the parabola b s + c s^2 through both measured points, where s is the distance from the rest value
+    // Coefficients of the parabola b s + c s^2 through both measured points, where s is the distance from the rest
+    // value.
     const double first = at[0] - rest_[i], second = at[1] - rest_[i];
     quadratic_.col(i) = (displaced[1] / second - displaced[0] / first) / (second - first);
     linear_.col(i) = displaced[0] / first - quadratic_.col(i) * first;

@@ -16,9 +16,9 @@
 namespace frontalis
 {
 
-// Vectors of places hold x, y and z of each landmark of the model, in this order, in the face frame [m].
+// Vectors of places have x, y and z of each landmark of the model, in this order, in the face frame [m].
 
-/// The simulations of a fit, all of which start at rest.
+/// The simulations of a fit, each of which starts at rest.
 class ForwardRuns
 {
 public:
@@ -26,7 +26,7 @@ public:
 
   /// Names the stage of the fit to which the next simulations belong.
   void announce(const std::string& stage, double done);
-  /// Places of the landmarks in equilibrium. Throws Error if there is none.
+  /// Places of the landmarks in equilibrium. Throws Error if no equilibrium is found.
   Eigen::VectorXd settle(const std::map<std::string, double>& values);
   /// Places of the landmarks at each of the given times, under controls that change linearly between knots.
   std::vector<Eigen::VectorXd> play(const ControlCurve& curve, const std::vector<double>& times);
@@ -37,7 +37,7 @@ public:
   const Model& model() const { return *model_; }
 
 private:
-  SkinState skin();  // the present skin, in the face frame
+  SkinState skin();  // present skin, in the face frame
 
   std::shared_ptr<const Model> model_;
   std::function<void(const std::string&, double)> watch_;
@@ -60,7 +60,7 @@ struct Influence
 };
 
 /// Reads the influence of the unknowns from the model's file in the folder `settings.cache`. Measures missing unknowns
-/// and adds them to the file, unless the folder cannot be written. `seconds` receives the wall time of the measurement.
+/// and adds them to the file, if the folder can be written. `seconds` receives the wall time of the measurement.
 Influence obtain_influence(ForwardRuns& runs, const std::vector<Unknown>& unknowns, const FitSettings& settings,
                            double& seconds);
 

@@ -17,7 +17,7 @@ using Eigen::VectorXd;
 
 constexpr int iterations = 30;          // largest number of Gauss-Newton iterations
 constexpr int halvings = 8;             // largest number of halvings of a step that does not lower the cost
-constexpr double smallest_step = 1e-6;  // change of an unknown over its range, below which iterations end
+constexpr double smallest_step = 1e-6;  // iterations end if unknowns change by less than this fraction of their range
 
 }  // namespace
 
@@ -43,7 +43,7 @@ void LandmarkFit::learn(const VectorXd& values, const VectorXd& displacements)
 {
   if (learned_)
   {
-    // Broyden's update: the smallest change of the derivative that explains the latest difference
+    // Broyden's update: the smallest change of the derivative that explains the latest difference.
     const VectorXd way = values - at_;
     if (const double length = way.squaredNorm(); length > 0)
       correction_ += (displacements - predicted(values)) * way.transpose() / length;

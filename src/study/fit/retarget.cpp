@@ -18,7 +18,7 @@ using Eigen::VectorXd;
 
 constexpr double millimetre = 1e-3;
 
-// displacements from rest per time; NaN for landmarks that the track does not have
+// Displacements from rest, one vector per time; NaN for landmarks that the track does not contain.
 std::vector<VectorXd> targets_of(const LandmarkTrack& track, const std::vector<std::size_t>& landmarks, Index size)
 {
   std::vector<VectorXd> out(track.time.size(), VectorXd::Constant(size, NAN));
@@ -184,7 +184,7 @@ RetargetResult retarget(const std::shared_ptr<const Model>& model, const Landmar
     }
     for (std::size_t t = 0; t < values.size(); ++t)
     {
-      // correct each time separately, so that effects of inertia do not count as influence
+      // Each time is corrected separately, so that effects of inertia do not count as influence.
       LandmarkFit moment(problem);
       moment.set_targets(targets[t]);
       moment.learn(values[t], reached[t]);

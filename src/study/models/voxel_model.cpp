@@ -59,7 +59,7 @@ Model dense_block(std::int32_t x, std::int32_t y, std::int32_t z)
   tissue.name = "hypodermis";
   Model model = voxel_model({ { x, y, z } }, 1e-3, tissue);
   hold(model, [](const Point& p) { return p[0] == 0; });
-  // this gravity shears a block of any length by about 5 %, so that it moves but does not collapse
+  // This gravity shears a block of any length by about 5 %, so that it moves but does not collapse.
   model.gravity = { { 0, 0, -0.05 * tissue.parameters[0] / (tissue.density * x * model.spacing[0]) } };
   return model;
 }
@@ -209,7 +209,7 @@ Binding bind_points(const Model& model, const Vectors& points)
   Binding binding;
   for (const Point& point : points)
   {
-    // searches the 5 x 5 x 5 grid cells around the point
+    // Searches the 5 x 5 x 5 grid cells around the point.
     double nearest = 1e300;
     std::size_t best = 0;
     for (int around = 0; around < 125; ++around)

@@ -20,7 +20,7 @@ namespace frontalis
 namespace
 {
 
-// colours that colour-blind readers can tell apart (Okabe & Ito 2008)
+// Colours that colour-blind readers can tell apart (Okabe & Ito 2008).
 const char* const colours[] = { "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000" };
 const char* const marks[] = { "7", "5" };
 const char* const more_marks[] = { "9", "13", "11" };
@@ -30,7 +30,7 @@ std::string replaced(const std::string& text, const char* what, const char* by)
   return std::regex_replace(text, std::regex(what), by);
 }
 
-// a gnuplot string in single quotes, which are doubled inside; text with a line break needs double quotes
+// A gnuplot string in single quotes, which are doubled inside; a line break needs double quotes.
 std::string quoted(const std::string& text)
 {
   return "'" + replaced(replaced(text, "'", "''"), "\n", "'.\"\\n\".'") + "'";
@@ -41,7 +41,7 @@ const char* colour_of(std::size_t index) { return colours[index % std::size(colo
 std::string style_of(const Plot::Curve& curve, std::size_t index)
 {
   const std::string colour = std::string(" lc rgb '") + colour_of(index) + "'";
-  // a colour that is used again gets other marks
+  // A colour that is used again gets other marks.
   const bool again = index >= std::size(colours);
   const std::string point = std::string(" pt ") + (again ? more_marks[index % 3] : marks[index % 2]) + " ps 0.9";
   const std::map<Plot::Style, std::string> styles = {
@@ -84,7 +84,7 @@ std::string script(const Plot& plot, const std::string& path)
       << " samplen 2 spacing " << (below ? 1.0 : 1.2) << "\n"
       << "set title " << quoted(plot.title)
       << "\nset xlabel "
-      // an empty line separates the label from a legend below it
+      // An empty line separates the label from a legend below it.
       << quoted(plot.x_label + (below ? "\n " : "")) << "\nset ylabel " << quoted(plot.y_label) << '\n';
   for (const auto& [axis, log, range] :
        { std::tuple{ 'x', plot.x_log, plot.x_range }, std::tuple{ 'y', plot.y_log, plot.y_range } })
@@ -98,7 +98,7 @@ std::string script(const Plot& plot, const std::string& path)
     for (std::size_t t = 0; t < ticks.size(); ++t)
       out << (t ? ", " : std::string("set ") + axis + "tics (") << ticks[t] << (t + 1 == ticks.size() ? ")\n" : "");
   for (std::size_t t = 0; t < plot.x_names.size(); ++t)
-    // gnuplot reads tick labels as format strings
+    // Percent signs are doubled, because gnuplot reads tick labels as format strings.
     out << (t ? ", " : "set xtics rotate by 25 right (") << replaced(quoted(plot.x_names[t]), "%", "%%") << ' ' << t
         << (t + 1 == plot.x_names.size() ? ")\nset boxwidth 0.6\nset lmargin 16\nset bmargin 7\n" : "");
   const auto draw = [&](const std::string& terminal, const std::string& file)

@@ -30,7 +30,7 @@ std::string shown(const Table::Cell& cell)
   return number != nullptr ? readable(*number) : std::get<std::string>(cell);
 }
 
-// number of characters of UTF-8 text
+// Number of characters of UTF-8 text.
 std::size_t width(const std::string& text)
 {
   return static_cast<std::size_t>(
@@ -108,7 +108,7 @@ std::string wrapped(const std::string& text, std::size_t columns)
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);)
   {
-    // rows of tables, headings, pictures and code must stay whole; continuation lines of a list item are indented
+    // Rows of tables, headings, pictures and code must stay whole. Continuation lines of a list item are indented.
     const bool is_whole = line.find_first_of("|#!< ") == 0, is_entry = line.rfind("- ", 0) == 0;
     std::size_t used = 0;
     std::istringstream words(is_whole ? "" : line);
@@ -126,7 +126,7 @@ std::string wrapped(const std::string& text, std::size_t columns)
 
 std::string json_text(const nlohmann::ordered_json& json)
 {
-  // names from files may be invalid UTF-8, which must not cause an exception
+  // Names from files may be invalid UTF-8, which must not cause an exception.
   return json.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
 }
 
@@ -141,7 +141,7 @@ void make_folder(const std::string& path)
 void write_text(const std::string& path, const std::string& text)
 {
   std::error_code failed;
-  // unlike a regular file, a device or a pipe cannot be replaced by renaming
+  // Unlike a regular file, a device or a pipe cannot be replaced by renaming.
   const bool is_replaceable = !fs::exists(path, failed) || fs::is_regular_file(path, failed);
   const std::string place = is_replaceable ? path + ".partial" : path;
   std::ofstream file(place, std::ios::binary);

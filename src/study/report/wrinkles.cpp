@@ -16,7 +16,7 @@ using Vector = Eigen::Vector3d;
 
 Vector vector(const std::array<float, 3>& p) { return { p[0], p[1], p[2] }; }
 
-// Vertices by cubes of space, so that those near a point are found at once.
+// Vertices sorted into cubes of space, so that those near a point are found quickly.
 class Cells
 {
 public:
@@ -61,7 +61,7 @@ std::vector<double> areas_of(const SkinState& skin, const SkinTriangles& triangl
   return areas;
 }
 
-// Heights over the skin without folds, and its points and normals.
+// Heights of the skin above the skin without folds, whose points and normals are here as well.
 struct SmoothSkin
 {
   std::vector<double> height;
@@ -76,12 +76,12 @@ SmoothSkin smooth_skin(const SkinState& skin, const SkinTriangles& triangles, do
   for (std::size_t i = 0; i < skin.vertices.size(); ++i)
   {
     const Vector at = vector(skin.vertices[i]), own = vector(skin.normals[i]);
-    std::vector<std::pair<std::size_t, double>> near;  // vertices and their weights
+    std::vector<std::pair<std::size_t, double>> near;  // vertices near a point, and their weights
     Vector normal = Vector::Zero();
     cells.near(at,
                [&](std::size_t j)
                {
-                 // the other side of a thin sheet, such as a lip, does not belong to this skin
+                 // The other side of a thin sheet, such as a lip, does not belong to this skin.
                  if (own.dot(vector(skin.normals[j])) < -0.5)
                    return;
                  const double d = (vector(skin.vertices[j]) - at).norm() / window;
@@ -109,13 +109,13 @@ SmoothSkin smooth_skin(const SkinState& skin, const SkinTriangles& triangles, do
   return out;
 }
 
-// Where a section crosses an edge of the skin.
+// Intersection of a section with an edge of the skin.
 struct SectionPoint
 {
-  double along;  // distance across the furrows [m], by which points are in order
+  double along;  // distance across the furrows, by which points are sorted [m]
   double height;
   Vector place, foot;
-  bool inside;  // of the box
+  bool inside;  // whether the point is in the box of WrinkleSettings
 };
 
 struct Bottom
@@ -124,13 +124,14 @@ struct Bottom
   double depth;        // [m]
 };
 
-// The furrows of a section: bottoms with points at least `least` higher on both sides, before the next bottom.
+// Finds the furrows of a section: bottoms beside which the skin rises by at least `least` on both sides before the next
+// bottom.
 std::vector<Bottom> bottoms_of(std::vector<SectionPoint>& section, double least)
 {
   std::sort(section.begin(), section.end(), [](const auto& a, const auto& b) { return a.along < b.along; });
   std::vector<std::size_t> extremes;  // a ridge, a bottom, a ridge, ...
   std::size_t candidate = 0;
-  bool ridge = true;  // whether the candidate is one
+  bool ridge = true;  // whether the present candidate is a ridge
   for (std::size_t i = 0; i < section.size(); ++i)
   {
     const double change = section[i].height - section[candidate].height;
@@ -153,7 +154,8 @@ std::vector<Bottom> bottoms_of(std::vector<SectionPoint>& section, double least)
   return bottoms;
 }
 
-// Where the skin crosses planes that are `distance` apart and perpendicular to `direction`, by plane.
+// Intersections of the skin with planes that are `distance` apart and perpendicular to `direction`, by index of the
+// plane.
 std::map<int, std::vector<SectionPoint>> sections_of(const SkinState& rest, const SkinState& now,
                                                      const SmoothSkin& smooth, const std::vector<double>& heights,
                                                      const SkinTriangles& triangles, const Vector& direction,
@@ -180,12 +182,12 @@ std::map<int, std::vector<SectionPoint>> sections_of(const SkinState& rest, cons
   };
   for (const auto& t : triangles)
     for (std::size_t e = 0; e < 3; ++e)
-      if (t[e] < t[(e + 1) % 3])  // the other triangle has the edge the other way round
+      if (t[e] < t[(e + 1) % 3])  // the other triangle has the edge in the opposite direction
         cross_edge(t[e], t[(e + 1) % 3]);
   return sections;
 }
 
-// The direction in which heights change least, and that across it in the skin: of the vertices in the box.
+// The direction in which the heights of the vertices in the box change least, and the direction across it in the skin.
 std::array<Vector, 2> directions_of(const SkinState& rest, const SmoothSkin& smooth, const std::vector<double>& heights,
                                     const SkinTriangles& triangles, const WrinkleSettings& settings)
 {
@@ -221,10 +223,10 @@ std::array<Vector, 2> directions_of(const SkinState& rest, const SmoothSkin& smo
   return { along, along.cross(normal).normalized() };
 }
 
-// Furrows that are being joined, section by section.
+// A furrow that is being joined, section by section.
 struct OpenFurrow
 {
-  int section;  // the last one
+  int section;  // index of the latest section
   Bottom last;
   int bottoms;
   Furrow sum;  // sums over the bottoms

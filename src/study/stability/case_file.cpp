@@ -13,7 +13,7 @@ namespace frontalis
 namespace
 {
 
-// splits "0.9", "20 ms" or "2 %" into number and unit; returns false if it does not begin with a finite number
+// Splits "0.9", "20 ms" or "2 %" into number and unit. Returns false if the text does not begin with a finite number.
 bool split(const std::string& text, double& number, std::string& unit)
 {
   const std::from_chars_result read = std::from_chars(text.data(), text.data() + text.size(), number);
@@ -66,7 +66,7 @@ CaseFile::CaseFile(std::string path) : path_(std::move(path))
     fault("hard", "is missing; must say in a few words what makes the case hard");
   if (text_.empty())
     fault("text", "is missing; must say what the case does and has to fulfil");
-  // CMake makes a test of the case for each of these backends
+  // CMake makes a test of the case for each of these backends.
   for (const std::string& backend : values("tests"))
     if (backend != "cpu" && backend != "reference")
       fault("tests", "'" + backend + "'; allowed are cpu and reference");

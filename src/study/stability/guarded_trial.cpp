@@ -32,7 +32,7 @@ GuardedTrial::GuardedTrial(CaseRun& run, std::shared_ptr<const Model> model, boo
     : run_(run), model_(std::move(model)), wants_ledger_(ledger)
 {
   run.settings.model(*model_);
-  // with few voxels, several threads would wait for each other longer than they work
+  // With few voxels, several threads would spend more time waiting for each other than working.
   const int threads = model_->voxels.size() < 2000 ? 1 : 0;
   SolverSettings own{ run.settings.backend, threads, 0 };
   own.ledger = ledger;
@@ -57,7 +57,7 @@ void GuardedTrial::advance(const Phase& phase)
 {
   for (int i = 0; i < phase.parts; ++i)
   {
-    // controls change linearly in time: a part covers 1 / (number of parts left) of the remaining change
+    // Controls change linearly in time: a part covers 1 / (number of parts left) of the remaining change.
     guard_->advance(phase.seconds / phase.parts,
                     interpolate(solver_->controls(), phase.target, 1.0 / (phase.parts - i)));
     record();

@@ -23,7 +23,7 @@ double finite_or_none(double value) { return std::isfinite(value) ? value : std:
 
 std::string percent(double share) { return std::isnan(share) ? "" : readable(100 * share, 2); }
 
-// "held", "stopped with a report: ...", "skipped: ..." or "FAILED: ..."
+// Text of a trial's result: "held", "stopped with a report: ...", "skipped: ..." or "FAILED: ...".
 std::string verdict_of(const Trial& trial)
 {
   if (!trial.skipped.empty())
@@ -147,7 +147,7 @@ void write_stability(const Trials& trials, const std::string& folder)
       "--all --mesh-dir DIR --markdown doc`, and all figures but those of a GPU are from one run of it. `--models DIR` "
       "writes the model of each motion.\n";
   out += "\n" + trials_markdown(trials);
-  // a hand-written text about runs on other machines
+  // A text written by hand about runs on other machines.
   std::ifstream elsewhere(pictures / "elsewhere.md");
   if (elsewhere)
     out += "\n" + std::string(std::istreambuf_iterator<char>(elsewhere), {});

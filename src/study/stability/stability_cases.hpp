@@ -21,14 +21,15 @@ struct CaseRun : CaseFile
 
   /// The number KEY of the file, or KEY_in_full in long runs.
   double count(const std::string& key) const;
-  /// Checks that `found` differs from `expected` by at most bounds.KEY of the file, in the same unit. `what`: its name.
+  /// Checks that `found` differs from `expected` by at most bounds.KEY of the file, in the same unit. `what`: name of
+  /// the figure.
   void check(const std::string& what, const std::string& unit, double expected, double found, const std::string& key);
   /// Like check(), with the bound in percent of the expected figure.
   void check_relative(const std::string& what, const std::string& unit, double expected, double found,
                       const std::string& key);
 };
 
-// name and function of each case of a family; stability.cpp reads the files of the cases
+// Name and function of each case of a family; stability.cpp reads the files of the cases.
 using CaseFunctions = std::vector<std::pair<std::string, void (*)(CaseRun&)>>;
 CaseFunctions hard_materials();
 CaseFunctions hard_shapes();
@@ -69,17 +70,17 @@ public:
   /// balance and that no node remains farther than bounds.left from its rest position. `of` names the motion in checks.
   void play_and_release(const std::vector<Phase>& phases, const std::string& of, const std::string& picture,
                         const std::string& title);
-  /// Like Solver::settle() with a tolerance of 1e-4. Throws Error if no equilibrium is reached within `factor`
-  /// times the case's longest_settling [s of simulated time].
+  /// Like Solver::settle() with a tolerance of 1e-4. Throws Error if no equilibrium is found within `factor` times the
+  /// case's longest_settling [s of simulated time].
   void settle(const Controls& target, double factor = 1);
-  /// Calls `play`. If the guard stops the motion, it must name a voxel in its report and leave a finite state.
+  /// Calls `play`. If the guard stops the motion, checks that its report names a voxel and that the state is finite.
   void hold_or_stop(const std::function<void()>& play);
-  /// Sets displacements [m] and, unless empty, velocities [m/s]; the ledger starts again.
+  /// Sets displacements [m] and, unless empty, velocities [m/s]. The ledger starts again.
   void set(const Vectors& displacements, const Vectors& velocities = {});
 
   Vectors displacements() const;
-  const Monitor& monitor() const { return monitor_; }       ///< as recorded last
-  const EnergyLedger& energies() const { return ledger_; }  ///< as recorded last
+  const Monitor& monitor() const { return monitor_; }       ///< latest record
+  const EnergyLedger& energies() const { return ledger_; }  ///< latest record
 
   /// Checks that the imbalance of the ledger stayed within the case's bounds.energy of its largest term, and plots the
   /// motion to `picture` if that is not empty.
@@ -102,7 +103,7 @@ private:
   bool wants_ledger_;
   Monitor monitor_;
   EnergyLedger ledger_;
-  // extremes over time [J]; not in the ledger, since the guard may return it to an earlier state
+  // Extremes over time [J]. They are not in the ledger, because the guard may return the ledger to an earlier state.
   double worst_imbalance_ = 0, most_hourglass_ = 0, largest_ = 0;
   std::vector<Moment> moments_;
 };
@@ -111,7 +112,8 @@ private:
 Material soft_tissue(double poisson = 0.49);
 /// A box of soft tissue with voxels of edge 1 mm; size and damping come from the case's file.
 Model damped_block(const CaseFile& file);
-/// Make nodes rigid like hold(): the lowest or highest plane along an axis, or both, of which `bone` moves the highest.
+/// hold_face() makes the nodes of the lowest or highest plane along an axis rigid, and hold_ends() those of both
+/// planes, of which `bone` moves the highest.
 void hold_face(Model& model, int axis, bool upper, const std::string& bone = {});
 void hold_ends(Model& model, int axis, const std::string& bone = {});
 

@@ -1,4 +1,4 @@
-// hard cases of constraints: ridges, edges, two surfaces at once, bones that jump, a head that is turned
+// Hard cases of constraints: ridges, edges, two surfaces at once, bones that jump, a head that is turned.
 
 #include "frontalis/model/sample_field.hpp"
 #include "frontalis/solver/rigid_motion.hpp"
@@ -18,7 +18,8 @@ namespace
 // Corners (x, z) [m] of a surface that is infinite along y.
 using Profile = std::vector<std::array<double, 2>>;
 
-// Distance from a surface, positive above it, or with `thin` on both sides, so that nodes can go round its ends.
+// Distance from a surface, positive above it. With `thin` it is positive on both sides, so that nodes can pass round
+// the surface's ends.
 double distance_to(const Profile& profile, bool thin, const Point& p)
 {
   double nearest = 1e300, height = 0;
@@ -34,7 +35,7 @@ double distance_to(const Profile& profile, bool thin, const Point& p)
   return thin || height > 0 ? nearest : -nearest;
 }
 
-// lets nodes that fulfil a condition slide on a surface
+// Lets the nodes that fulfil a condition slide on a surface.
 void slide(Model& model, const Profile& profile, const Condition& condition)
 {
   slide_on(
@@ -42,8 +43,8 @@ void slide(Model& model, const Profile& profile, const Condition& condition)
       [&](const Point& p) { return distance_to(profile, false, p); }, nodes_where(model, condition), 0.5e-3, 100e-3);
 }
 
-// largest deviation of sliding nodes from their level in the field of their surface [m], and their largest displacement
-// along x [m]
+// Largest deviation of sliding nodes from their level in the field of their surface [m], and their largest displacement
+// along x [m].
 std::pair<double, double> slid(const GuardedTrial& motion)
 {
   double worst = 0, travel = 0;
@@ -54,7 +55,7 @@ std::pair<double, double> slid(const GuardedTrial& motion)
     for (std::size_t axis = 0; axis < 3; ++axis)
       p[axis] += u[node.node][axis];
     const double error = level_at(motion.model().constraint_surfaces[node.surface].field, p) - node.distance;
-    // where the field ends there is no level
+    // There is no level where the field ends.
     worst = std::isnan(error) ? 1 : std::max(worst, std::abs(error));
     travel = std::max(travel, std::abs(u[node.node][0]));
   }
@@ -64,7 +65,7 @@ std::pair<double, double> slid(const GuardedTrial& motion)
 bool underside(const Point& p) { return p[2] < 0.5e-3; }
 
 // Advances by the case's `drag` [s] in forty parts, with activation(i) in part i. Checks the levels of sliding nodes
-// after each part, and at the end that nodes have travelled `least_travel` [mm] along x.
+// after each part, and finally that nodes have moved by `least_travel` [mm] along x.
 void drag(
     CaseRun& run, GuardedTrial& motion, const std::string& of, double least_travel,
     const std::function<float(int)>& activation = [](int) { return 0.0F; })
@@ -105,7 +106,8 @@ void off_the_edge(CaseRun& run)
   for (std::size_t i = 0; i < rims.size(); ++i)
   {
     Model model = damped_block(run);
-    // the field's spacing is below two thirds of the nodes' distance, so that their cells do not reach the other side
+    // The spacing of the field is below two thirds of the nodes' distance from the sheet, so that their cells do not
+    // reach its other side.
     const Profile sheet{ { -40e-3, -0.3e-3 }, { 1e-3 * rims[i], -0.3e-3 } };
     slide_on(
         model, "sheet", [&](const Point& p) { return distance_to(sheet, true, p); }, nodes_where(model, underside),
@@ -120,7 +122,7 @@ void off_the_edge(CaseRun& run)
 
 void two_surfaces(CaseRun& run)
 {
-  // a layer of one voxel between two surfaces, whose distance falls from 0.6 mm where it starts to 0.4 mm where it ends
+  // A layer of one voxel between two surfaces, whose distance falls from 0.6 mm at the start to 0.4 mm at the end.
   Model model = damped_block(run);
   slide(model, { { -40e-3, 0.2e-3 }, { 60e-3, 0.2e-3 } }, underside);
   slide(model, { { -40e-3, 0.8e-3 }, { 10e-3, 0.8e-3 }, { 30e-3, 0.6e-3 }, { 60e-3, 0.6e-3 } },
@@ -146,7 +148,7 @@ void bone_jump(CaseRun& run)
     const std::string& name = time.first;
     const double seconds = time.second;
     GuardedTrial motion(run, model);
-    // within a time step, the bone moves ten times faster than sound in the tissue
+    // Within a time step, the bone moves ten times as fast as sound in the tissue.
     const bool violent = seconds < 1e-4;
     const auto play = [&]
     {
@@ -168,7 +170,7 @@ void bone_jump(CaseRun& run)
   }
 }
 
-// turning the bone changes the direction of gravity relative to the tissue that is attached to it
+// Turns the bone, which changes the direction of gravity relative to the tissue that is attached to it.
 void turning_gravity(CaseRun& run)
 {
   Model model = damped_block(run);

@@ -1,4 +1,4 @@
-// hard cases of contact: a finger, a lid, bodies that jump, edges, two bodies on one sheet; lips
+// Hard cases of contact: a finger, a lid, bodies that jump, edges, two bodies on one sheet, and lips.
 
 #include "frontalis/model/sample_field.hpp"
 #include "frontalis/solver/rigid_motion.hpp"
@@ -14,7 +14,7 @@ namespace frontalis
 namespace
 {
 
-// Adds a body, moved by a new bone of that name, that may touch the lower or upper side of a box of whole voxels.
+// Adds a body that may touch the lower or upper side of a box of whole voxels, moved by a new bone with this name.
 void touch(Model& model, const std::string& bone, bool upper, const SampledField& body, double friction)
 {
   Contact contact = touching_side(model, upper, body);
@@ -33,7 +33,7 @@ SampledField wedge(const Model& model, double x, double z)
     const double beside = std::abs(p[0] - x), above = p[2] - z;
     return above < -beside ? std::hypot(beside, above) : (beside - above) * std::sqrt(0.5);
   };
-  constexpr double depth = 6e-3;  // greatest depth of tissue in the wedge [m]
+  constexpr double depth = 6e-3;  // largest depth of tissue in the wedge [m]
   return sample_band({ { x - depth, -1e-3, z } }, { { x + depth, 1e-3 * (model.size[1] + 1), z + depth } }, distance,
                      0.5e-3, depth);
 }
@@ -95,7 +95,7 @@ void let_rest(CaseRun& run, GuardedTrial& motion, const std::string& of, const s
 
 void finger(CaseRun& run)
 {
-  // skin lies on fat, and fat on bone
+  // Skin lies on fat, and fat on bone.
   VoxelBox box{ run.size(), { { 1e-3, 1e-3, 1e-3 } }, { neo_hookean(4e3, 0.49), neo_hookean(40e3, 0.49) } };
   box.material = [&](const Voxel& v) { return v[2] + 2 >= box.size[2] ? 1 : 0; };
   Model model = voxel_model(box);
@@ -115,12 +115,12 @@ void finger(CaseRun& run)
 
 void blinking(CaseRun& run)
 {
-  // a lid in front of an eyeball, whose centre is the middle of the grid; it hangs from a bone that turns about x
+  // A lid in front of an eyeball, whose centre is the middle of the grid. The lid hangs from a bone that turns about x.
   const double eye = 1e-3 * run.number("eye", "mm"), thick = 1e-3 * run.number("thickness", "mm");
   const auto half = static_cast<std::int32_t>(std::ceil(1e3 * (eye + thick)) + 1);
   const Point centre{ { 1e-3 * half, 1e-3 * half, 0 } };
   const double half_width = run.number("half_width", "rad"), height = run.number("height", "rad");
-  // polar coordinates: angle about z, angle above the equator, distance from the centre
+  // Polar coordinates: angle about z, angle above the equator, distance from the centre.
   const auto polar = [=](const Point& p) -> Point
   {
     const double x = p[0] - centre[0], y = p[1] - centre[1], z = p[2] - centre[2], r = std::hypot(x, y, z);
@@ -170,7 +170,7 @@ void blinking(CaseRun& run)
     const Vectors shut = motion.displacements();
     depth = std::max(depth, deepest(motion));
     motion.advance({ 0.5 * blink, turned(0) });
-    // the first swing has died away by the 20th blink
+    // The first swing has died away by the 20th blink.
     if (i == 20)
       shut_before = shut;
     if (i > 20)
@@ -219,7 +219,7 @@ void sharp_edge(CaseRun& run)
 
 void pinched_sheet(CaseRun& run)
 {
-  // a sheet of one voxel's thickness, held at its ends, between two fingertips
+  // A sheet with the thickness of one voxel, held at its ends, between two fingertips.
   Model model = damped_block(run);
   hold_ends(model, 0);
   const double radius = 1e-3 * run.number("radius", "mm"), top = 1e-3 * model.size[2];
@@ -239,7 +239,8 @@ void pinched_sheet(CaseRun& run)
 
 void lips(CaseRun& run)
 {
-  // two lips, joined at the corners of the mouth, around which a muscle runs as a ring; bones hold them above and below
+  // Two lips that are joined at the corners of the mouth and held by bones above and below. A muscle runs around them
+  // as a ring.
   const Voxel size = run.size();
   const std::int32_t slit = size[2] / 2, corner = static_cast<std::int32_t>(run.number("corner"));
   VoxelBox box{ size, { { 1e-3, 1e-3, 1e-3 } }, { soft_tissue() } };
@@ -250,7 +251,7 @@ void lips(CaseRun& run)
   add_muscles(model, { Muscle{ "ring", 1e6 * run.number("stress", "MPa"), true, true } },
               [&](std::size_t e)
               {
-                // the ring is an ellipse about the slit; fibres go along it
+                // The ring is an ellipse around the slit; fibres run along it.
                 const auto& v = model.voxels[e];
                 const double a = x0 - 0.5 * corner, b = run.number("half_height"), x = (v[0] + 0.5 - x0) / a,
                              z = (v[2] + 0.5 - z0) / b, radius = std::hypot(x, z);
@@ -282,7 +283,7 @@ void lips(CaseRun& run)
   };
   const double shut = run.number("shut", "mm"), open = run.number("open", "mm");
   motion.advance({ run.seconds("pressing"), opened(1, -shut), 20 });
-  // the sides of the slit are grids of nodes of equal number
+  // The two sides of the slit are grids with equal numbers of nodes.
   const Vectors u = motion.displacements();
   double overlap = -1;
   const auto across = nodes_where(model, [&](const Point& p) { return std::lround(1e3 * p[2]) == slit; });

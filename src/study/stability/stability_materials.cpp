@@ -1,4 +1,4 @@
-// hard cases of materials: near-incompressibility, contrasts, thin layers, stiffening, scaled mass
+// Hard cases of materials: near-incompressibility, contrasts, thin layers, stiffening, scaled mass.
 
 #include "frontalis/physics/materials/all.hpp"
 #include "frontalis/study/statics.hpp"
@@ -14,7 +14,7 @@ namespace frontalis
 namespace
 {
 
-// the translation `drawn_by` of the file, which is in mm
+// The translation `drawn_by` of the file, which is in mm.
 RigidTransform drawn_by(const CaseRun& run)
 {
   const std::vector<double> by = run.numbers("drawn_by", "mm", 3);
@@ -29,7 +29,7 @@ Model cantilever(const CaseRun& run, double poisson)
   return model;
 }
 
-// a block whose face x = 0 is fixed and whose opposite face is moved by the bone "grip"
+// A block whose face x = 0 is fixed and whose opposite face is moved by the bone "grip".
 Model gripped_block(const CaseRun& run, const std::vector<Material>& materials)
 {
   Model model = damped_block(run);
@@ -38,7 +38,7 @@ Model gripped_block(const CaseRun& run, const std::vector<Material>& materials)
   return model;
 }
 
-// mean vertical displacement of the free end at equilibrium [mm]
+// Mean vertical displacement of the free end at equilibrium [mm].
 double settled_tip(GuardedTrial& motion)
 {
   motion.settle(motion.controls());
@@ -67,7 +67,7 @@ void stiffness_contrast(CaseRun& run)
   Model model = gripped_block(run, { soft_tissue(), neo_hookean(1e6 * run.number("tendon", "MPa"), 0.49),
                                      neo_hookean(1e6 * run.number("corneum", "MPa"), 0.49),
                                      neo_hookean(1e3 * run.number("dermis", "kPa"), 0.49) });
-  // a chequerboard of tendon and fat; every fourth plane of voxels is half corneum and half dermis
+  // A chequerboard of tendon and fat; every fourth plane of voxels is half corneum and half dermis.
   mix(model,
       [&](std::size_t e) -> Mixture
       {

@@ -1,4 +1,4 @@
-// hard cases of muscles: neighbours of passive tissue, opposed and strong muscles, faces activated at once
+// Hard cases of muscles: neighbours of passive tissue, opposed and strong muscles, faces activated at once.
 
 #include "study/stability/stability_cases.hpp"
 
@@ -56,7 +56,7 @@ void opposed_muscles(CaseRun& run)
   model.materials.push_back(neo_hookean(0.5e6, 0.49));
   const float s = std::sqrt(0.5F);
   const double stress = 1e6 * run.number("stress", "MPa");
-  // three muscles overlap in the middle; the third is perpendicular to the others
+  // Three muscles overlap in the middle; the third is perpendicular to the others.
   add_muscles(model,
               { Muscle{ "left", stress, true, true }, Muscle{ "right", stress, true, true },
                 Muscle{ "across", stress, true, true } },
@@ -108,17 +108,17 @@ void strong_muscle(CaseRun& run)
                           "A muscle of 5 MPa in fat of 34 kPa, released at full contraction");
 }
 
-// activates every muscle of a face fully within one time step, and deactivates them likewise
+// Activates every muscle of a face fully within one time step, and deactivates all of them within another.
 void switch_on(CaseRun& run, const std::string& scene)
 {
-  // let the guard check every 128 steps, because the motion after a switch lasts only a few hundred steps
+  // The guard checks every 128 steps, because the motion after a switch lasts only a few hundred steps.
   GuardedTrial motion(run, run.settings.scene(scene), true, { 128 });
   motion.advance({ motion.solver().time_step(), motion.controls(1), 1 });
   motion.advance({ run.seconds("on"), motion.controls(1), 40 });
   motion.advance({ motion.solver().time_step(), motion.controls(0), 1 });
   motion.advance({ run.seconds("off"), motion.controls(0), 40 });
   motion.check_balance("every muscle on and off at once");
-  // the real head gets no plot, because its data are private
+  // The real head gets no plot, because its data are private.
   if (scene == "forehead")
     motion.plot(scene + "_switched", "Every muscle switched on in one step, and off");
 }

@@ -1,4 +1,4 @@
-// hard cases of shapes: crushed, twisted, scrambled, turning, dangling and slender voxels
+// Hard cases of shapes: crushed, twisted, scrambled, turning, dangling and slender voxels.
 
 #include "frontalis/study/statics.hpp"
 #include "study/stability/stability_cases.hpp"
@@ -14,7 +14,7 @@ namespace
 
 const double pi = std::acos(-1.0);
 
-// checks that the stored energy has been released and voxels have regained their volumes
+// Checks that the stored energy has been released and voxels have regained their volumes.
 void expect_rest(CaseRun& run, GuardedTrial& motion, const std::string& of, double stored_before)
 {
   const Monitor& m = motion.monitor();
@@ -22,7 +22,7 @@ void expect_rest(CaseRun& run, GuardedTrial& motion, const std::string& of, doub
   run.check("final smallest J, " + of, "1", 1, m.worst_jacobian, "smallest_J");
 }
 
-// releases a block from imposed displacements [m]
+// Releases a block from imposed displacements [m].
 void let_go(CaseRun& run, const Model& model, const Vectors& displacements, int parts, const std::string& of,
             const std::string& picture, const std::string& title)
 {
@@ -113,7 +113,7 @@ void scrambled(CaseRun& run)
     model.hourglass = form.hourglass;
     model.integration = form.integration;
     std::mt19937 random(7);
-    // displacements of equal length in random directions
+    // The displacements have equal lengths and random directions.
     Vectors u(model.nodes.size());
     for (auto& p : u)
     {
@@ -151,7 +151,7 @@ void rigid_rotation(CaseRun& run)
   motion.check_balance("ten turns", "rigid_rotation", "A free block turns ten times");
   run.check_relative("kinetic energy after ten turns", "uJ", 1e6 * kinetic, 1e6 * motion.energies()["kinetic"],
                      "kinetic_energy");
-  // a rigid motion keeps the distance between opposite nodes
+  // A rigid motion keeps the distance between opposite nodes.
   const auto now = motion.displacements();
   double worst = 0;
   for (std::size_t n = 0; n < now.size(); ++n)
@@ -168,7 +168,7 @@ void rigid_rotation(CaseRun& run)
 void dangling(CaseRun& run)
 {
   VoxelBox box{ run.size(), { { 1e-3, 1e-3, 1e-3 } }, { soft_tissue() } };
-  // a fixed slab, to which a sheet, a strip, a voxel at its edge and one at its corner are attached; and a free voxel
+  // A fixed slab with a sheet, a strip, a voxel at its edge and one at its corner attached to it; and a free voxel.
   box.fill = [](const Voxel& v) -> double
   {
     const bool top = v[2] == 6;

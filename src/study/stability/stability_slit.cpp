@@ -1,4 +1,4 @@
-// the hard case of a slit of zero width, which is pulled open and pressed shut
+// The hard case of a slit of zero width, which is pulled open and pressed shut.
 
 #include "study/stability/stability_cases.hpp"
 
@@ -58,7 +58,7 @@ void add_side(const Model& model, SelfContact& contact, std::int32_t k, bool upp
     }
 }
 
-/// The least and the largest width of the slit [m] at its nodes.
+/// The smallest and the largest width of the slit [m] at its nodes.
 std::pair<double, double> widths(GuardedTrial& motion, std::int32_t length)
 {
   const Model& model = motion.model();

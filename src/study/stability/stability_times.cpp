@@ -1,4 +1,4 @@
-// hard cases of time and input: millions of steps at rest and under cycling activation; values that are not finite
+// Hard cases of time and input: millions of steps at rest and under cycling activation; values that are not finite.
 
 #include "frontalis/error.hpp"
 #include "frontalis/runner/runner.hpp"
@@ -13,7 +13,7 @@ namespace frontalis
 namespace
 {
 
-// a small bar with a muscle along it, under gravity
+// A small bar with a muscle along it, under gravity.
 Model hanging_strand(const CaseRun& run)
 {
   Model model = damped_block(run);
@@ -61,7 +61,7 @@ void long_cycling(CaseRun& run)
     const Vectors up = motion.displacements();
     motion.advance({ period / 2, motion.controls(0) });
     const Vectors down = motion.displacements();
-    // the first swing has died away by the 20th cycle
+    // The first swing has died away by the 20th cycle.
     if (i == 20)
     {
       high = up;
@@ -75,7 +75,8 @@ void long_cycling(CaseRun& run)
   run.check("deviation from the 20th cycle", "um", 0, 1e6 * worst, "cycle");
 }
 
-// Passes non-finite values to every function that takes numbers. Each must throw an Error and not change the motion.
+// Passes non-finite values to every function that takes numbers. Each must throw an Error and leave the motion
+// unchanged.
 void no_number(CaseRun& run)
 {
   Model model = hanging_strand(run);
@@ -131,7 +132,7 @@ void no_number(CaseRun& run)
   }
   run.trial.checks.absolute("values accepted", "", 0, accepted, 0);
   run.trial.checks.absolute("motion changed meanwhile", "um", 0, 1e6 * farthest(motion.displacements(), before), 0);
-  // set_velocities() does not check its values, so the guard must find them
+  // set_velocities() does not check its values, so that the guard must find them.
   motion.advance({ run.seconds("between"), motion.controls(0.5F) });
   solver.set_velocities(Vectors(model.nodes.size(), { { nan, infinite, nan } }));
   motion.advance({ run.seconds("after"), motion.controls(0.5F), 10 });

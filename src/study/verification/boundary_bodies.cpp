@@ -41,7 +41,7 @@ SceneMaterial material_of(const std::string& name, double modulus, double poisso
   return material;
 }
 
-// tissue between an outer surface, which is the skin, and an inner one
+// Tissue between an outer surface, which is the skin, and an inner one.
 Scene scene_between(const Surface& inner, const Surface& outer, double poisson)
 {
   Scene scene;
@@ -76,8 +76,8 @@ SceneConstraint constraint_at(const std::string& surface, SceneConstraint::Kind 
   return constraint;
 }
 
-// U and W of curved_layer() at the outer radius b of a layer on a sphere of radius a, which is stiff beyond radius c.
-// The body force f [N/m3] acts against z.
+// U and W of curved_layer() at the outer radius b of a layer on a sphere of radius a. The layer is stiff beyond the
+// radius c. The body force f [N/m3] acts against z.
 std::pair<double, double> radial_solution(double a, double b, double c, double poisson, bool slides, double f)
 {
   constexpr int n = 4000;
@@ -112,7 +112,7 @@ std::pair<double, double> radial_solution(double a, double b, double c, double p
   return { solution[2 * n], solution[2 * n + 1] };
 }
 
-// a box in the frame `turn`, from its lower to its upper corner, as an OBJ file
+// Writes a box as an OBJ file. `lower`, `upper`: its corners in the frame `turn`.
 Surface box_surface(const std::string& name, const Eigen::Matrix3d& turn, const Eigen::Vector3d& lower,
                     const Eigen::Vector3d& upper, const std::string& folder)
 {
@@ -131,7 +131,7 @@ Surface box_surface(const std::string& name, const Eigen::Matrix3d& turn, const 
   for (int axis = 0; axis < 3; ++axis)
     for (int side = 0; side < 2; ++side)
     {
-      // corners of a side, in the order that makes its normal point outwards
+      // Corners of a side, in the order that makes its normal point outwards.
       const int base = 1 + (side << axis), b = 1 << (axis + 1) % 3, c = 1 << (axis + 2) % 3;
       const int first = side == 1 ? b : c, second = side == 1 ? c : b;
       out << "f " << base << " " << base + first << " " << base + first + second << "\n";
@@ -172,7 +172,7 @@ BoundaryBody curved_layer(double thickness, double poisson, bool slides, bool st
                                            slides ? SceneConstraint::Kind::sliding : SceneConstraint::Kind::rigid) };
   if (!stiff)
     body.bound = 0.03;
-  // gravity is so weak that strains are about 1e-4
+  // Gravity is so weak that strains are about 1e-4.
   const double gravity = slides ? 0.1 : 1;
   body.scene.gravity = { 0, 0, -gravity };
   const auto [radial, tangential] = radial_solution(a, b, c, poisson, slides, density * gravity);
@@ -238,7 +238,7 @@ BoundaryBody turned_bar(bool round, BarLoad load, const std::string& folder)
   BoundaryBody body;
   body.name = std::string(round ? "round bar, " : "square bar turned, ") + (bends ? "bending" : "torsion");
   body.scene = scene_between(bone, bar, poisson);
-  body.scene.skin.extrapolation = 10e-3;  // for the part of the skin in the bone
+  body.scene.skin.extrapolation = 10e-3;  // part of the skin is inside the bone, far from the tissue
   body.scene.constraints = { constraint_at("bone", SceneConstraint::Kind::rigid) };
   body.exact = [=](const Point& p) -> Point
   {
@@ -264,7 +264,7 @@ BoundaryBody turned_bar(bool round, BarLoad load, const std::string& folder)
     const Eigen::Vector3d y = turn.transpose() * to_vector(p);
     return turn * (bends ? Eigen::Vector3d(0, 0, -y[0]) : Eigen::Vector3d(-y[1], y[0], 0));
   };
-  // tractions act at the middles of the end's triangles: scale them so that their moment is exact
+  // Tractions act at the middles of the end's triangles. They are scaled so that their moment is exact.
   const double moment = (round ? pi / 4 : 4.0 / 3) * std::pow(half, 4) * (bends ? 1 : 2);
   double of_triangles = 0;
   for (const auto& t : body.end.triangles)
@@ -274,7 +274,7 @@ BoundaryBody turned_bar(bool round, BarLoad load, const std::string& folder)
   }
   body.traction = [=](const Point& p) -> Point
   { return to_point(moment / of_triangles * modulus * curvature * unit_traction(p)); };
-  // bending has the period of a cantilever's first mode, with the wave number 1.875 / length; torsion is faster
+  // The period of bending is that of a cantilever's first mode, with the wave number 1.875 / length. Torsion is faster.
   const double slowness = bends ? 0.5 * half : length / 1.875;
   body.period = bends ? 2 * pi * length * length / (3.516 * slowness * std::sqrt(young / density))
                       : 4 * length / std::sqrt(modulus / density);

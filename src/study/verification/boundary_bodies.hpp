@@ -10,11 +10,11 @@
 namespace frontalis
 {
 
-/// A scene to bake of a body whose sides do not follow the grid, and the exact displacement under small loads.
+/// A body whose sides do not follow the grid, as a scene to bake, and its exact displacement under small loads.
 /// Positions and vectors are in the scene's frame, in SI units.
 struct BoundaryBody
 {
-  /// Symmetry at the planes through the scene's origin that cut the body to an eighth.
+  /// Symmetry of a body of which planes through the scene's origin leave one eighth.
   enum class Mirror
   {
     none,
@@ -24,12 +24,13 @@ struct BoundaryBody
   std::string name;
   Scene scene;
   Mirror mirror = Mirror::none;
-  /// Exact displacement of a point of the skin or of a loaded surface; NaN where it must not be compared.
+  /// Exact displacement of a point of the skin or of a loaded surface; NaN where the displacement must not be compared.
   std::function<Point(const Point&)> exact;
-  /// Traction on the end of a bar [Pa] and the mesh of that end; not set: the scene has all loads.
+  /// Traction on the end of a bar [Pa] and the mesh of that end. Not set if the scene has all loads.
   std::function<Point(const Point&)> traction;
   TriangleMesh end;
-  /// Largest error that passes with voxels of 2 mm and `boundary: true`: twice the largest error with 1 mm; NaN: none.
+  /// Largest error that passes with voxels of 2 mm and `boundary: true`. It is twice the largest error found with
+  /// voxels of 1 mm. NaN: no bound.
   double bound = std::numeric_limits<double>::quiet_NaN();
   double period = 0;  ///< approximate period of the slowest vibration [s]
 };
@@ -38,11 +39,11 @@ struct BoundaryBody
 double triangle_area(const TriangleMesh& mesh, const std::array<std::int32_t, 3>& triangle);
 
 /// A layer under gravity on a sphere of radius 60.37 mm, to which it is fixed or on which it slides. The exact
-/// displacement is the solution of the radial equations for u = U(r) cos(theta) e_r + W(r) sin(theta) e_theta, by 4000
+/// displacement solves the radial equations for u = U(r) cos(theta) e_r + W(r) sin(theta) e_theta, found with 4000
 /// linear elements. `stiff`: the outer millimetre is ten times as stiff.
 BoundaryBody curved_layer(double thickness, double poisson, bool slides, bool stiff);
 
-/// A hollow sphere with radii of 20 and 40 mm under internal pressure (solution of Lame).
+/// A hollow sphere with radii of 20 and 40 mm under internal pressure (Lame's solution).
 BoundaryBody pressed_sphere(double poisson);
 
 enum class BarLoad
@@ -50,9 +51,9 @@ enum class BarLoad
   bending,
   torsion
 };
-/// A bar that is turned by 30 degrees about two axes. One end is attached to a bone, the other end is loaded. The bar
-/// is round (10 mm thick, 30 mm long) or square (8 mm thick, 40 mm long). In bending, Poisson's ratio is 0, so that the
-/// closed form holds at the bone too. The meshes of bone and square bar are written to `folder`.
+/// A bar that is turned by 30 degrees about two axes, attached to a bone at one end and loaded at the other. A round
+/// bar is 10 mm thick and 30 mm long, a square one 8 mm thick and 40 mm long. In bending, Poisson's ratio is 0, so that
+/// the closed form also holds at the bone. The meshes of the bone and of a square bar are written to `folder`.
 BoundaryBody turned_bar(bool round, BarLoad load, const std::string& folder);
 
 }  // namespace frontalis

@@ -56,7 +56,7 @@ inline std::vector<double> lumped_masses(const Model& model)
   return mass;
 }
 
-/// Force [N] and moment [N m] on a plate, or rate of change of the tissue's momentum and angular momentum.
+/// Force [N] and moment [N m] on a plate, or the rates of change of the tissue's momentum and angular momentum.
 using Wrench = std::array<double, 6>;
 
 inline void add_momentum(Wrench& sum, const Point& place, const Point& momentum)

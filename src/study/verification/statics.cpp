@@ -41,7 +41,7 @@ Model lone_voxel(const Model& model, std::size_t e)
   return one;
 }
 
-// the properties of a voxel that determine its stiffness
+// The properties of a voxel that determine its stiffness.
 std::vector<float> stiffness_key(const Model& model, std::size_t e)
 {
   std::vector<float> key{ model.fill[e] };
@@ -73,7 +73,7 @@ ElementMatrix element_stiffness(const Model& model, std::size_t e, const std::ar
     for (int row = 0; row < 24; ++row)
       k(row, column) = (after[row / 3][row % 3] - before[row / 3][row % 3]) / (2 * step);
   }
-  // removes the asymmetry of rounding errors
+  // The mean with the transpose removes the asymmetry of rounding errors.
   return 0.5 * (k + k.transpose());
 }
 
@@ -106,7 +106,7 @@ Sparse voxel_stiffness(const Model& model, const std::array<double, 9>& gradient
   return sparse(size, size, entries);
 }
 
-// Central differences of the forces of each triangle, transferred to the nodes that carry its vertices.
+// Stiffness of shells, by central differences of the forces of each triangle, which are passed on to the nodes.
 Sparse shell_stiffness(const Model& model, const std::array<double, 9>& gradient)
 {
   const ShellMesh mesh(model);
@@ -160,11 +160,11 @@ Sparse shell_stiffness(const Model& model, const std::array<double, 9>& gradient
 
 RestState find_equilibrium(Model model, const EquilibriumSettings& settings)
 {
-  constexpr double longest = 60;  // periods
+  constexpr double longest = 60;  // in periods
   model.damping = 4 * std::acos(-1.0) / settings.period;
   for (auto& load : model.loads)
     load.ramp = settings.ramp * settings.period;
-  // with few voxels, several threads would wait for each other longer than they work
+  // With few voxels, several threads would spend more time waiting for each other than working.
   const int threads = model.voxels.size() < 2000 ? 1 : 0;
   const auto shared = std::make_shared<const Model>(std::move(model));
   RestState result{ make_solver(shared, { settings.backend, threads, 0 }), {} };
@@ -203,9 +203,10 @@ Point internal_force(Solver& solver, const std::vector<std::int32_t>& nodes)
 
 struct LinearStatics::System
 {
-  std::vector<std::array<int, 3>> unknown;  // row of each component of each node; -1: fixed
-  Vectors fixed;                            // prescribed displacements [m]
-  Eigen::VectorXd forces;                   // forces that prescribed displacements cause [N]
+  // row of the equations of each component of each node; -1: the component is fixed
+  std::vector<std::array<int, 3>> unknown;
+  Vectors fixed;           // prescribed displacements [m]
+  Eigen::VectorXd forces;  // forces that prescribed displacements cause [N]
   Eigen::SimplicialLLT<Sparse> factor;
 
   template <class Visit>
@@ -280,7 +281,7 @@ Vectors face_forces(const Model& model, int axis, std::int32_t index, const Poin
     for (const int side : { 0, 1 })
     {
       const auto first = corners[static_cast<std::size_t>(side) << axis];
-      // count a face once: for the voxel below it, or in plane 0, which has no voxel below, for the voxel above it
+      // Each face is counted once: for the voxel below it or, in plane 0, for the voxel above it.
       if (model.nodes[first][axis] != index || (side == 0 && index != 0))
         continue;
       for (std::size_t b = 0; b < 8; ++b)

@@ -84,12 +84,12 @@ struct CaseText
   std::string title, before, after;  // markdown before and after the figures
 };
 
-// the sections of text.md by the names of their cases; empty if the file is missing
+// The sections of text.md by the names of their cases; empty if the file is missing.
 std::map<std::string, CaseText> read_texts(const std::string& path)
 {
   std::ifstream file(path);
   std::map<std::string, CaseText> texts;
-  CaseText ignored;  // text above the first section
+  CaseText ignored;  // collects the text above the first section
   CaseText* text = &ignored;
   std::string* part = &ignored.before;
   for (std::string line; std::getline(file, line);)
@@ -109,7 +109,7 @@ std::map<std::string, CaseText> read_texts(const std::string& path)
   return texts;
 }
 
-// a table under its caption; browsers fold one of more than eight rows until its caption is clicked
+// A table under its caption. Browsers hide a table of more than eight rows until a reader clicks on the caption.
 std::string captioned(const std::string& caption, const Table& table)
 {
   const std::string rows = table.markdown();
@@ -145,7 +145,7 @@ void write_manual(const Findings& findings, const std::string& path)
     const auto& checks = finding.checks;
     const auto is_bounded = [](const Check& check) { return !std::isnan(check.bound); };
     const auto passes = [&](const Check& check) { return is_bounded(check) && check.passed(); };
-    double used = std::nan("");  // the largest error over its bound
+    double used = std::nan("");  // the largest error divided by its bound
     for (const Check& check : checks)
       used = check.bound > 0 ? std::fmax(used, check.error() / check.bound) : used;
     overview.add({ "[" + text.title + "](#" + name + ")",

@@ -1,4 +1,4 @@
-// bending with each hourglass control against a converged solution, and periods of vibration
+// Compares bending with each hourglass control with a converged solution, and periods of vibration with theory.
 
 #include "study/verification/verification_cases.hpp"
 
@@ -21,7 +21,7 @@ struct Deflection
   double tip_force, own_weight;  // mean deflection of the end under each of the two loads [m]
 };
 
-// deflections of a square cantilever by linear statics, with `n` voxels through its height; only ratios are used
+// Deflections of a square cantilever by linear statics, with `n` voxels through its height. Only their ratios are used.
 Deflection deflection(double poisson, int n, HourglassControl form, const Ratio& ratio,
                       Integration integration = Integration::one_point)
 {

@@ -1,4 +1,4 @@
-// bodies whose sides do not follow the grid, baked like the scene of a user
+// Verifies bodies whose sides do not follow the grid. They are baked in the same way as a user's scene.
 
 #include "frontalis/error.hpp"
 #include "frontalis/physics/trilinear.hpp"
@@ -120,7 +120,7 @@ void compare(const BoundaryBody& body, const Model& model, const TriangleMesh& m
   }
 }
 
-/// RMS error of the displacement over the RMS displacement.
+/// Root mean square error of the displacement, divided by the root mean square displacement.
 double error_of(const BoundaryBody& body, double edge, const Backend& backend, const BakeScene& bake)
 {
   Scene scene = body.scene;
@@ -130,7 +130,7 @@ double error_of(const BoundaryBody& body, double edge, const Backend& backend, c
   load_end(body, model);
   EquilibriumSettings search;
   search.backend = backend;
-  // settling is tested over windows of some hundred steps, which are many periods of a thin layer of coarse voxels
+  // Settling is tested over windows of some hundred steps, which are many periods of a thin layer of coarse voxels.
   search.period = std::max(body.period, 0.04);
   const RestState state = find_equilibrium(model, search);
   std::array<std::vector<double>, 3> u;

@@ -1,4 +1,4 @@
-// compares solutions of voxels with those of CalculiX with quadratic hexahedra
+// Compares solutions of voxels with those of CalculiX with quadratic hexahedra.
 
 #include "frontalis/error.hpp"
 #include "study/verification/verification_cases.hpp"
@@ -24,10 +24,10 @@ constexpr std::array<bool, 3> everything{ { true, true, true } };
 
 Point still(const Point&) { return {}; }
 
-// A problem that both this solver and CalculiX can solve: a box of neo-Hookean materials, held and loaded.
+// A problem that this solver and CalculiX can both solve: a box of neo-Hookean materials, held and loaded.
 struct SolidProblem
 {
-  // Prescribes `displacement` [m] in the selected components at nodes whose rest position [m] satisfies `where`.
+  // Prescribes the selected components of `displacement` [m] at nodes whose rest position [m] satisfies `where`.
   struct Hold
   {
     Condition where;
@@ -47,13 +47,13 @@ struct SolidState
   Vectors positions, displacements, forces;
 };
 
-// corners and edge midpoints of the element at the origin in half elements, in CalculiX's order
+// Corners and edge midpoints of the element at the origin, in half elements and in CalculiX's order.
 constexpr int element_nodes[20][3] = { { 0, 0, 0 }, { 2, 0, 0 }, { 2, 2, 0 }, { 0, 2, 0 }, { 0, 0, 2 },
                                        { 2, 0, 2 }, { 2, 2, 2 }, { 0, 2, 2 }, { 1, 0, 0 }, { 2, 1, 0 },
                                        { 1, 2, 0 }, { 0, 1, 0 }, { 1, 0, 2 }, { 2, 1, 2 }, { 1, 2, 2 },
                                        { 0, 1, 2 }, { 0, 0, 1 }, { 2, 0, 1 }, { 2, 2, 1 }, { 0, 2, 1 } };
 
-// The input file of CalculiX, in mm, N, MPa and t. `positions` gets its nodes [m].
+// Returns the input file of CalculiX, in mm, N, MPa and t. `positions` receives its nodes [m].
 std::string deck(const SolidProblem& problem, const Lattice& elements, Vectors& positions)
 {
   std::map<Lattice, int> number;
@@ -129,7 +129,7 @@ std::string text_of(const std::filesystem::path& path)
   return { std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>() };
 }
 
-// reads the last table `name`, of `count` nodes, in CalculiX's output; the factor `unit` converts numbers to SI units
+// Reads the last table with a name, of `count` nodes, from CalculiX's output. The factor `unit` converts to SI units.
 Vectors last_block(const std::string& output, const std::string& name, std::size_t count, double unit)
 {
   const std::size_t at = output.rfind(name);
@@ -153,9 +153,9 @@ Vectors last_block(const std::string& output, const std::string& name, std::size
 }
 
 // Solves the problem by CalculiX (program ccx) with elements[0] x [1] x [2] quadratic hexahedra (C3D20R), hyperelastic,
-// large deformation. Its neo-Hookean solid is ours with C10 = mu / 2 and D1 = 2 / kappa (CalculiX manual,
-// *HYPERELASTIC: U = C10 (I1 - 3) + (J - 1)^2 / D1 of the isochoric I1). Input and output are in a temporary folder
-// that is removed afterwards. Throws Error with the end of CalculiX's log if it fails.
+// with large deformation. CalculiX's neo-Hookean solid equals ours with C10 = mu / 2 and D1 = 2 / kappa (CalculiX
+// manual, *HYPERELASTIC: U = C10 (I1 - 3) + (J - 1)^2 / D1 of the isochoric I1). Input and output are in a temporary
+// folder that is removed afterwards. Throws Error with the end of CalculiX's log if CalculiX fails.
 SolidState solve_by_calculix(const SolidProblem& problem, const Lattice& elements)
 {
   SolidState state;
@@ -201,9 +201,9 @@ SolidState solve_by_voxels(const SolidProblem& problem, double edge, double peri
   return state;
 }
 
-constexpr double tiny = 1e-7;  // [m], tolerance for equal positions
+constexpr double tiny = 1e-7;  // tolerance for equal positions [m]
 
-// sum of the forces on the nodes that fulfil a condition [N]
+// Sum of the forces on the nodes that fulfil a condition [N].
 Point force_on(const SolidState& state, const Condition& where)
 {
   Point sum{};
@@ -214,7 +214,7 @@ Point force_on(const SolidState& state, const Condition& where)
   return sum;
 }
 
-// displacement [m] of the node at a position; NaN if there is none
+// Displacement [m] of the node at a position; NaN if there is no node.
 Point displacement_at(const SolidState& state, const Point& point)
 {
   for (std::size_t n = 0; n < state.positions.size(); ++n)
@@ -233,7 +233,8 @@ struct Comparison
   double period;              // period of the slowest vibration [s]
   std::array<std::string, 2> what, unit;
   std::function<std::array<double, 2>(const SolidState&)> figures;
-  bool second_is_small = false;  // the second figure is a small difference of large stresses, so it has no bound
+  // The second figure is a small difference of large stresses and therefore has no bound.
+  bool second_is_small = false;
 };
 
 bool start(const Point& p) { return p[0] < tiny; }

@@ -6,7 +6,7 @@
 namespace frontalis
 {
 
-// the cases, listed in verification.cpp
+// The cases that need no scene; verification.cpp lists them.
 using VerificationFunction = void(const Backend& backend, Finding& finding);
 VerificationFunction verify_rigid_motion, verify_affine_motion, verify_energy_gradient, verify_uniaxial_stretch,
     verify_simple_shear, verify_active_bar, verify_published_bar, verify_cantilever, verify_vibration,
@@ -28,13 +28,14 @@ inline std::string name_of(HourglassControl form)
 /// Wrinkles of a stiff film on a deep soft base, both with Poisson's ratio 0.49, in plane strain.
 struct Wrinkles
 {
-  double wavelength = 0;   ///< wavelength over the film's thickness
+  double wavelength = 0;   ///< wavelength divided by the film's thickness
   double compression = 0;  ///< critical compression [%]
 };
-/// Wrinkles by plate theory (Cao & Hutchinson 2012). `contrast`: Young's modulus of the film over that of the base.
+/// Wrinkles by plate theory (Cao & Hutchinson 2012). `contrast`: Young's modulus of the film divided by that of the
+/// base.
 Wrinkles expected_wrinkles(double contrast);
-/// Stretch normal to a base at which there is no stress in this direction, if the base is stretched by `along` in its
-/// plane. Poisson's ratio is 0.49, in plane strain.
+/// Stretch normal to a base's plane at which there is no stress in this direction, if the base is stretched by `along`
+/// in its plane. Poisson's ratio is 0.49, in plane strain.
 double free_stretch(double along);
 
 /// A solver that works in the calling thread.

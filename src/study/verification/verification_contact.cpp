@@ -1,4 +1,4 @@
-// contact with rigid bodies: blocks that are pressed, bounce, slip and slide, on every backend
+// Contact with rigid bodies: blocks that are pressed, bounce, slip and slide, on every backend.
 
 #include "frontalis/physics/contact.hpp"
 #include "frontalis/study/contact_model.hpp"
@@ -119,7 +119,7 @@ void verify_contact_wrench(const Backend&, Finding& finding)
     const std::vector<double> mass = lumped_masses(model);
     constexpr double dt = 2e-6;
     const auto solver = make(model, backend, false, dt);
-    // the block arrives obliquely and rotates, so that no component of momentum is zero
+    // The block arrives obliquely and rotates, so that no component of momentum is zero.
     Vectors velocity;
     for (std::size_t n = 0; n < model.nodes.size(); ++n)
     {
@@ -165,7 +165,7 @@ void verify_contact_wrench(const Backend&, Finding& finding)
 
 void verify_contact_incline(const Backend&, Finding& finding)
 {
-  // the angle of friction is 26.6 degrees; gravity starts suddenly, and the block bounces until it has settled
+  // The angle of friction is 26.6 degrees. Gravity starts suddenly, and the block bounces until it has settled.
   constexpr double friction = 0.5, damping = 50, settling = 0.15, time = 0.05, degree = 3.14159265358979 / 180;
   const auto on_incline = [&](double degrees, const Backend& backend)
   {
@@ -188,8 +188,8 @@ void verify_contact_incline(const Backend&, Finding& finding)
     finding.checks.absolute("way at 22°, " + backend, "um", 0, 1e6 * way(*on_incline(22, backend)), 1);
     for (const double degrees : { 35.0, 60.0 })
     {
-      // with damping c and acceleration a, a block that moves by w in a time t then moves by q w + a t (1 - q) / c in
-      // the same time, where q = exp(-c t)
+      // With damping c and acceleration a, a block that moves by w in a time t moves by q w + a t (1 - q) / c in the
+      // next interval of this length, where q = exp(-c t).
       const auto solver = on_incline(degrees, backend);
       const double first = way(*solver), second = way(*solver), q = std::exp(-damping * time);
       finding.checks.relative("acceleration at " + readable(degrees) + "°, " + backend, "m/s2",

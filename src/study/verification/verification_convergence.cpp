@@ -1,4 +1,4 @@
-// the order of convergence in the voxel edge, and the error of boundaries that are staircases of voxels
+// The order of convergence in the voxel edge, and the error of boundaries that are staircases of voxels.
 
 #include "study/verification/verification_cases.hpp"
 
@@ -56,7 +56,7 @@ double cook(double h, HourglassControl form, double fill_min, bool whole)
   model.hourglass = form;
   prescribe(model, nodes_where(model, [](const auto& p) { return p[0] == 0; }), { { true, true, false } });
   prescribe(model, nodes_where(model, [](const auto& p) { return p[2] == 0; }), { { false, false, true } });
-  // scale the force to 1 per unit of thickness, since voxel faces at the end differ in total area
+  // The force is scaled to 1 per unit of thickness, because the voxel faces at the end differ in total area.
   Vectors forces = face_forces(model, 0, box.size[0], { { 0, 1, 0 } });
   double sum = 0;
   for (const auto& f : forces)
@@ -70,10 +70,10 @@ double cook(double h, HourglassControl form, double fill_min, bool whole)
 
 struct Surface
 {
-  double mean = 0, spread = 0;  // mean and standard deviation of the radial displacement over that of Lame's solution
+  double mean = 0, spread = 0;  // mean and standard deviation of the radial displacement, divided by Lame's solution
 };
 
-// inner and outer surface of an eighth of a hollow sphere, radii 1 cm and 2 cm, under a small pressure inside
+// Inner and outer surface of an eighth of a hollow sphere, with radii of 1 cm and 2 cm, under a small pressure inside.
 std::array<Surface, 2> hollow_sphere(int n, HourglassControl form, const Backend& backend)
 {
   const double a = 1e-2, b = 2e-2, young = 1e4, poisson = 0.45, pressure = 20, pi = std::acos(-1.0);
@@ -87,7 +87,7 @@ std::array<Surface, 2> hollow_sphere(int n, HourglassControl form, const Backend
   Model model = voxel_model(box);
   model.hourglass = form;
   hold_mirror_planes(model);
-  // normals point to the centre, out of the tissue
+  // The normals point to the centre, out of the tissue.
   const auto sphere = [&](double radius)
   {
     return grid_mesh(2 * n, 2 * n,
@@ -104,9 +104,9 @@ std::array<Surface, 2> hollow_sphere(int n, HourglassControl form, const Backend
   model.skin.vertices.insert(model.skin.vertices.end(), outside.vertices.begin(), outside.vertices.end());
   model.skin.triangles = inside.triangles;
   model.skin_binding = bind_points(model, model.skin.vertices);
-  // the tolerance is above the rounding errors of single precision, which are 1e-4 at such small strains
+  // The tolerance is above the rounding errors of single precision, which are 1e-4 at such small strains.
   const EquilibriumSettings relax{ backend, 4 * b / std::sqrt(young / 3 / 1000), 5e-4 };
-  // take half the difference between the solutions with pressure and with suction: it has no second-order terms
+  // Half the difference between the solutions with pressure and with suction has no second-order terms.
   SkinState skin[2];
   for (const int side : { 0, 1 })
   {

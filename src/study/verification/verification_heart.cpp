@@ -1,4 +1,4 @@
-// cardiac mechanics benchmark, problems 1 and 3: Land et al. 2015, Proc. R. Soc. A 471:20150641
+// Cardiac mechanics benchmark, problems 1 and 3: Land et al. 2015, Proc. R. Soc. A 471:20150641.
 
 #include "frontalis/physics/materials/all.hpp"
 #include "study/verification/verification_cases.hpp"
@@ -21,24 +21,24 @@ Material heart(double kappa)
   material.name = "heart";
   material.law = law_of<physics::Guccione>;
   material.density = 1000;
-  // c, kappa [Pa], bf, bt, bfs; the last three are the direction of the fibre in the beam
+  // The parameters are c, kappa [Pa], bf, bt, bfs, and the direction of the fibre in the beam.
   material.parameters = { { 2e3, kappa, 8, 2, 4, 1, 0, 0 } };
   return material;
 }
 
-// final height [mm] of the upper edge of the beam's end, with n voxels through the beam's height
+// Final height [mm] of the upper edge of the beam's end, with n voxels through the beam's height.
 double beam(int n, double kappa, const Backend& backend)
 {
   Model model = voxel_model({ { 10 * n, n, n } }, 1e-3 / n, heart(kappa));
   model.hourglass = HourglassControl::assumed_strain;
   hold(model, [](const auto& p) { return p[0] == 0; });
-  // normals point down
+  // The normals point down.
   add_pressure(model, 4, grid_mesh(n, 10 * n, [](double s, double t) { return Point{ { 1e-2 * t, 1e-3 * s, 0 } }; }));
   const auto end = nodes_where(model, [](const auto& p) { return p[0] > 9.99e-3 && p[2] > 0.99e-3; });
   return 1 + 1e3 * mean_displacement(find_equilibrium(model, { backend, 0.14, 1e-3 }).displacements, end)[2];
 }
 
-// direction of the fibre at a position in the wall, relative to the centre of the ellipsoids [m]
+// Direction of the fibre at a position in the wall, relative to the centre of the ellipsoids [m].
 std::array<float, 3> wall_fibre(double x, double y, double z)
 {
   const double radius = std::hypot(x, y);
@@ -62,7 +62,7 @@ struct Apex
   double inner, outer;  // distances of the inner and outer apex from the ellipsoids' centre [mm]
 };
 
-// apices of the inflated and contracted ellipsoid, with voxels of edge h [m]
+// Apices of the inflated and contracted ellipsoid, with voxels of edge h [m].
 Apex ellipsoid(double h, double kappa, const Backend& backend)
 {
   const Point centre{ { 10e-3, 10e-3, 20e-3 } };
@@ -88,7 +88,7 @@ Apex ellipsoid(double h, double kappa, const Backend& backend)
   hold(model, [&](const auto& p) { return p[2] > 25e-3 - 0.1 * h; });
   const int rows = static_cast<int>(std::lround(30e-3 / h));
   const double edge = std::acos(5.0 / 17);
-  // rows run from the apex upwards; normals point into the cavity
+  // The rows run from the apex upwards; the normals point into the cavity.
   add_pressure(model, 15e3,
                grid_mesh(rows, 2 * rows,
                          [&](double s, double t) -> Point

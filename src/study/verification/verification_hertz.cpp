@@ -1,4 +1,4 @@
-// contact with rigid bodies: a sphere on a layer
+// Contact with rigid bodies: a sphere on a layer.
 
 #include "frontalis/model/sample_field.hpp"
 #include "study/verification/verification_cases.hpp"
@@ -12,9 +12,9 @@ namespace
 
 constexpr double pi = 3.14159265358979323846;
 
-// A rigid sphere is pressed without friction into an elastic layer on a rigid ground, to which the layer is bonded. The
-// factor of Dimitriadis et al., Biophysical Journal 82, 2002, times the force of Hertz is the force on the sphere. chi:
-// Hertz's contact radius over the thickness of the layer.
+// Factor of Dimitriadis et al., Biophysical Journal 82, 2002, on the force of Hertz: a rigid sphere is pressed without
+// friction into an elastic layer, which is bonded to a rigid ground. chi: Hertz's contact radius divided by the
+// thickness of the layer.
 double layer_factor(double poisson, double chi)
 {
   const double a = -(1.2876 - 1.4678 * poisson + 1.3442 * poisson * poisson) / (1 - poisson);
@@ -29,12 +29,12 @@ double hertz_force(double young, double poisson, double radius, double depth)
   return 4.0 / 3 * young / (1 - poisson * poisson) * std::sqrt(radius * depth) * depth;
 }
 
-// lengths in voxels: contact radius, thickness of the layer, half of its width
+// Lengths in voxels: contact radius, thickness of the layer, half of its width.
 constexpr std::int32_t contact_radius = 8, thickness = 24, half_width = 40;
 constexpr double edge = 0.5e-3, young = 34e3, poisson = 0.3, density = 1000;
 constexpr double radius = contact_radius * edge / 0.1, depth = 0.1 * contact_radius * edge;
 
-// Position of the layer in the grid: rotated about y [degrees], and shifted along x and z [voxels].
+// Placement of the layer in the grid: rotation about y [degrees], and shifts along x and z [voxels].
 struct Placement
 {
   std::string name;
@@ -47,12 +47,13 @@ struct Pressed
   double shortfall;  // depth of the sphere minus that of the tissue below its middle [m]
 };
 
-// Presses the sphere into half of a layer, which is cut at y = 0. The fill of a voxel is its fraction in the layer.
+// Presses the sphere into half of a layer, which is cut at y = 0. The fill of a voxel is the fraction of it that is in
+// the layer.
 Pressed press(const Placement& placement, const Backend& backend)
 {
   const double c = std::cos(placement.turn * pi / 180), s = std::sin(placement.turn * pi / 180);
   const double shift = placement.shift * edge, length = 2 * half_width * edge, top = thickness * edge;
-  // maps the layer's coordinates (ground at z = 0, middle at x = 0) to the grid
+  // Maps coordinates of the layer (ground at z = 0, middle at x = 0) to the grid.
   const auto in_grid = [&](const Point& p) -> Point
   {
     const double x = p[0] + 0.5 * length;
@@ -82,7 +83,7 @@ Pressed press(const Placement& placement, const Backend& backend)
   contact.name = "sphere";
   contact.bone = 0;
   contact.field = sphere_field(in_grid({ { 0, 0, top + radius } }), radius);
-  // the part of the surface that may touch the sphere
+  // The part of the surface that may touch the sphere.
   constexpr int rows = 4 * contact_radius;
   const double reach = 2 * contact_radius * edge;
   const TriangleMesh surface = grid_mesh(2 * rows, rows,
@@ -126,7 +127,7 @@ void verify_hertz(const Backend& backend, Finding& finding)
   {
     const Pressed pressed = press(placement, backend);
     finding.checks.relative("force, " + placement.name, "N", expected, pressed.force, 0.05);
-    // the shortfall is the penetration that contact allows
+    // The shortfall is the penetration that the stiffness of contact allows.
     finding.checks.absolute("sphere deeper than tissue, " + placement.name, "voxels", 0, pressed.shortfall / edge,
                             0.05);
   }

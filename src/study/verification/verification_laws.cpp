@@ -1,4 +1,4 @@
-// forces of elements and stresses of laws, which must be exact except for rounding, and contraction of free bars
+// Forces of elements and stresses of laws, which must be exact except for rounding, and contraction of free bars.
 
 #include "frontalis/physics/materials/lookup.hpp"
 #include "study/verification/verification_cases.hpp"
@@ -40,7 +40,7 @@ Vectors internal_forces(Solver& solver, const Vectors& displacements)
   return forces;
 }
 
-// first Piola-Kirchhoff stress [Pa] of a homogeneously deformed block, from the forces on three of its faces
+// First Piola-Kirchhoff stress [Pa] of a homogeneously deformed block, from the forces on three of its faces.
 Gradient piola_stress(const Model& model, Solver& solver)
 {
   Gradient P{};
@@ -70,7 +70,7 @@ std::vector<std::pair<std::string, Material>> every_law()
   return laws;
 }
 
-// equilibrium stretch along x of a free bar of 4 x 2 x 2 voxels
+// Equilibrium stretch along x of a free bar of 4 x 2 x 2 voxels.
 double contracted(const Material& material, const Muscle& muscle, float activation, const Backend& backend)
 {
   Model model = voxel_model({ { 4, 2, 2 } }, edge, material);
@@ -86,7 +86,7 @@ double contracted(const Material& material, const Muscle& muscle, float activati
 
 void verify_rigid_motion(const Backend& other, Finding& finding)
 {
-  // rotation by 1.2 rad about (1, 2, 3) by Rodrigues' formula
+  // Rotation by 1.2 rad about (1, 2, 3) by Rodrigues' formula.
   const double length = std::sqrt(14.0), a[3] = { 1 / length, 2 / length, 3 / length };
   const double c = std::cos(1.2), s = std::sin(1.2);
   const double cross[9] = { 0, -a[2], a[1], a[2], 0, -a[0], -a[1], a[0], 0 };
@@ -177,7 +177,7 @@ void verify_energy_gradient(const Backend& other, Finding& finding)
 
 void verify_uniaxial_stretch(const Backend& backend, Finding& finding)
 {
-  // stretch, P11/μ, lateral stretch, J
+  // Columns: stretch, P11/μ, lateral stretch, J.
   const double expected[7][4] = { { 0.5, -3.480201, 1.405832, 0.988182 }, { 0.7, -1.333561, 1.191455, 0.993695 },
                                   { 0.9, -0.332530, 1.053031, 0.997987 }, { 1.1, 0.271538, 0.954416, 1.002001 },
                                   { 1.3, 0.701838, 0.879723, 1.006086 },  { 1.5, 1.043711, 0.820731, 1.010399 },
@@ -215,7 +215,7 @@ void verify_simple_shear(const Backend& backend, Finding& finding)
     const Gradient F{ { 1, gamma, 0, 0, 1, 0, 0, 0, 1 } };
     solver->set_displacements(affine_displacements(model, F));
     const Gradient P = piola_stress(model, *solver);
-    // Cauchy stress: sigma = P F^T, because J = 1
+    // The Cauchy stress is sigma = P F^T, because J = 1.
     const auto sigma = [&](int i, int j)
     {
       return (P[3 * i] * F[3 * j] + P[3 * i + 1] * F[3 * j + 1] + P[3 * i + 2] * F[3 * j + 2]) /
@@ -236,7 +236,7 @@ void verify_active_bar(const Backend& backend, Finding& finding)
   Material material;
   material.density = 1000;
   material.parameters = { { mu, 2000 * mu } };
-  // Ta/μ, stretch
+  // Pairs of active stress Ta/μ and expected stretch.
   for (const auto& [stress, stretch] : { std::pair{ 0.1, 0.96873 }, { 0.5, 0.87358 }, { 1, 0.79370 }, { 2, 0.69336 } })
     finding.checks.relative("stretch at Ta/μ = " + readable(stress), "1", stretch,
                             contracted(material, Muscle{ "bar", stress * mu, false, false }, 1, backend), 5e-4);

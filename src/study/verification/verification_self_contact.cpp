@@ -1,4 +1,4 @@
-// contact of tissue with itself: blocks that are pressed together in several places of the grid, and that collide
+// Contact of tissue with itself: blocks that are pressed together at several placements in the grid, and that collide.
 
 #include "frontalis/model/sample_field.hpp"
 #include "frontalis/physics/contact.hpp"
@@ -16,12 +16,12 @@ namespace
 
 constexpr double edge = 1e-3, young = 34e3, density = 1000, degree = 3.14159265358979 / 180;
 
-// lengths in voxels: sides and height of a block, and the gap between the two blocks
+// Lengths in voxels: sides and height of a block, and the gap between the two blocks.
 constexpr double length = 18, width = 4, height = 6, gap = 3;
 
-// Two blocks, one above the other, in a grid that is turned about y and shifted along x and z. Normally, partly filled
-// voxels have the stress at their centre and are left out if less than a fifth is filled. With `cut` they have the
-// stress at the tissue's centroid.
+// Two blocks, one above the other, in a grid that is turned about y and shifted along x and z. With `cut`, partly
+// filled voxels have their stress at the tissue's centroid. Without it, they have their stress at the voxel's centre,
+// and voxels of which less than a fifth is filled are left out.
 class Blocks
 {
 public:
@@ -46,7 +46,7 @@ public:
       cut_at_surface(model, inside, samples);
     for (const bool upper : { false, true })
     {
-      // the outer side slides on a plane; the upper plane moves with a bone
+      // The outer side of each block slides on a plane; the upper plane moves with a bone.
       const double end = upper ? top : 0, normal = 1000;
       const Point centre = in_grid({ { 0.5 * length, 0.5 * width, end + normal / edge } });
       const auto surface =
@@ -85,7 +85,7 @@ private:
   double cosine_, sine_, shift_;
 };
 
-// Displacement of a point normal to the surfaces [m].
+// Displacement of a point along the normal of the surfaces [m].
 double across_at(const Blocks& blocks, const Vectors& u, const Point& q)
 {
   const Binding there = bind_points(blocks.model, { blocks.in_grid(q) });
@@ -114,7 +114,7 @@ void press(const std::string& place, double degrees, double shift, double poisso
   solver->advance(0.03, controls);
   solver->advance(0.06, controls);
   const Vectors u = displacements(*solver);
-  // leave out the surroundings of the free sides, which are staircases
+  // The surroundings of the free sides, which are staircases, are left out.
   constexpr double margin = height;
   double least = 1, most = 0, sum = 0, squeezed = 0;
   int count = 0;
@@ -130,7 +130,7 @@ void press(const std::string& place, double degrees, double shift, double poisso
       squeezed += across_at(blocks, u, { { x, y, 1.5 } }) - across_at(blocks, u, { { x, y, height - 1.5 } });
       ++count;
     }
-  // neo-Hookean tissue stiffens under compression: pressure / E = strain (1 + strain), up to the second order
+  // Neo-Hookean tissue stiffens under compression: pressure / E = strain (1 + strain), to second order.
   const double found = squeezed / (count * (height - 3) * edge), pressure = found * (1 + found);
   const std::string of = ", " + place + ", ν = " + readable(poisson) + ", " + backend;
   finding.checks.relative("pressure over E" + of, "1", 0.05, pressure, 0.1);
@@ -165,7 +165,8 @@ void collide(const Backend& backend, Finding& finding)
   solver->set_velocities(velocity);
   const auto momenta = [&]
   {
-    // take velocities from one step: positions move along the velocity, which adds no angular momentum
+    // The velocities are taken from one step, in which positions move along the velocity; this adds no angular
+    // momentum.
     const Vectors from = displacements(*solver);
     const double begin = solver->time();
     solver->advance(0.5 * solver->time_step(), solver->controls());

@@ -1,4 +1,4 @@
-// layers that are shells: strained membranes, bent plates, a cantilever, films that wrinkle; all baked from scenes
+// Layers that are shells, baked from scenes: strained membranes, bent plates, a cantilever, films that wrinkle.
 
 #include "study/verification/verification_cases.hpp"
 
@@ -18,7 +18,8 @@ namespace
 constexpr double young = 1e6, poisson = 0.49;  // Young's modulus [Pa] and Poisson's ratio of the shell
 const double pi = std::acos(-1.0);
 
-// A box of tissue with a layer that is a shell. It is cut out of a larger box, so that the layer covers only the top.
+// A box of tissue with a layer that is a shell. The box is cut out of a larger one, so that the layer covers only the
+// top.
 struct Slab
 {
   Voxel size;
@@ -81,11 +82,12 @@ double shell_energy(const Model& model, const Vectors& u)
   return solver->ledger()["shell"];
 }
 
-// Energy of a plate bent to an oblong bump, over that in plate theory. `angle`: angle of the bump to the voxels.
+// Energy of a plate that is bent to an oblong bump, divided by that of plate theory. `angle`: of the bump to the
+// voxels.
 double bump_energy(const Model& model, const Slab& slab, double angle)
 {
   const double side = slab.size[0] * slab.edge, amplitude = 1e-3 * slab.edge, radius[2] = { 0.24 * side, 0.45 * side };
-  // with w = a (1 - (x / r0)^2 - (y / r1)^2)^4 the bump needs no moment at its rim
+  // With w = a (1 - (x / r0)^2 - (y / r1)^2)^4 the bump needs no moment at its rim.
   const auto bump = [&](double x, double y)
   {
     const double q = 1 - std::pow(x / radius[0], 2) - std::pow(y / radius[1], 2);
@@ -107,7 +109,7 @@ double bump_energy(const Model& model, const Slab& slab, double angle)
   return shell_energy(model, u) / (0.5 * bending_stiffness(slab.thickness) * squared);
 }
 
-// Tip deflection of a strip under a force at its tip, by linear statics, over the deflection of a beam.
+// Tip deflection of a strip under a force at its tip, by linear statics, divided by the deflection of a beam.
 double strip_deflection(double depth, const BakeScene& bake)
 {
   Slab slab{ { { 33, 4, 1 } } };
@@ -120,7 +122,7 @@ double strip_deflection(double depth, const BakeScene& bake)
   Vectors forces(model.nodes.size());
   for (const auto n : tip)
     forces[n][2] = force / static_cast<double>(tip.size());
-  // a strip that is free to bend across has the stiffness of a beam
+  // A strip that is free to bend across its length has the stiffness of a beam.
   const double beam = bending_stiffness(slab.thickness) * (1 - poisson * poisson) * width;
   return mean_displacement(LinearStatics(model).solve(forces), tip)[2] * 3 * beam / (force * std::pow(reach, 3));
 }
@@ -128,7 +130,7 @@ double strip_deflection(double depth, const BakeScene& bake)
 // A film on a deep soft base, in plane strain.
 struct Film
 {
-  double contrast;   // Young's modulus of the film over that of the base
+  double contrast;   // Young's modulus of the film divided by that of the base
   double thickness;  // [m]
   double edge;       // edge of voxels [m]
 
@@ -147,8 +149,8 @@ std::array<double, 9> compressed(double compression)
   return { { 1 - compression, 0, 0, 0, 1, 0, 0, 0, free_stretch(1 - compression) } };
 }
 
-// A film on a base with a length of `waves` wavelengths. Ends and bottom are displaced as by a uniform compression.
-// Ends that are free to rise would fold at half the compression, as the end of a free beam does.
+// A film on a base with a length of `waves` wavelengths. Ends and bottom are displaced as in a uniform compression,
+// because ends that are free to rise would fold at half the compression, as the end of a free beam does.
 FilmModel film_model(const Film& film, double waves, const BakeScene& bake, double compression = 0)
 {
   const double edges = film.wavelength() / film.edge;
@@ -166,7 +168,7 @@ FilmModel film_model(const Film& film, double waves, const BakeScene& bake, doub
   return made;
 }
 
-// Positions along the length, and the height of the top there minus its mean.
+// Positions along the length, with the height of the top at each position minus its mean.
 std::vector<std::pair<double, double>> profile(const Model& model, const Vectors& u)
 {
   std::map<double, double> height;
@@ -298,7 +300,7 @@ Table film_table()
                  "found [mm]", "critical compression [%]", "found [%]" });
 }
 
-// Whether there is something to run, and says why not.
+// Returns whether the case can run. If not, the finding says why.
 bool runs(const BakeScene& bake, Finding& finding)
 {
   if (!bake)

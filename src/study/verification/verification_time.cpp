@@ -1,4 +1,4 @@
-// time dependence: viscous relaxation, the balance of energies, a million steps in single precision
+// Time dependence: viscous relaxation, the balance of energies, a million steps in single precision.
 
 #include "study/verification/verification_cases.hpp"
 
@@ -10,7 +10,7 @@ namespace frontalis
 namespace
 {
 
-// shear force on the upper side of a block [N]
+// Shear force on the upper side of a block [N].
 double shear_force(Solver& solver, const Model& model)
 {
   return internal_force(
@@ -29,7 +29,7 @@ Model sheared_block(const std::array<double, 2>& share, const std::array<double,
   return model;
 }
 
-// a bar along x under gravity [m/s2], fixed at one end
+// A bar along x under gravity [m/s2], fixed at one end.
 Model hanging_bar(const Voxel& size, double gravity)
 {
   Model model = voxel_model(size, 1e-3, neo_hookean(34e3, 0.45));
@@ -111,7 +111,7 @@ void verify_energy_balance(const Backend& backend, Finding& finding)
 void verify_precision(const Backend&, Finding& finding)
 {
   constexpr int steps = 1000000;
-  // displacement of the bar's end [mm] after a pressure on it has grown during all steps
+  // Displacement of the bar's end [mm] under a pressure that has grown during all steps.
   const auto end_displacement = [&](const Backend& backend, Precision precision)
   {
     Model model = hanging_bar({ { 16, 1, 1 } }, 0);

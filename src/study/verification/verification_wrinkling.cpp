@@ -1,4 +1,4 @@
-// wrinkling of a stiff film on a soft base: critical compression and wavelength
+// Wrinkling of a stiff film on a soft base: critical compression and wavelength.
 
 #include "study/verification/verification_cases.hpp"
 
@@ -15,15 +15,16 @@ namespace
 
 constexpr double poisson = 0.49, base_young = 1e4;
 
-// a film on a base
+// A film on a base, as planes of voxels.
 struct Layers
 {
   std::array<double, 3> spacing{ { 1e-3, 1e-3, 1e-3 } };  // edges of voxels [m]
   int base = 0;                                           // number of planes of voxels
-  std::vector<double> film;  // Young's modulus of each plane of voxels, lowest first, over that of the base
+  // Young's modulus of each plane of voxels of the film, lowest first, divided by that of the base
+  std::vector<double> film;
 };
 
-// compression (0..1) at which a cell of `half` voxels, half a wavelength long, becomes unstable
+// Compression (0..1) at which a cell of `half` voxels, half a wavelength long, becomes unstable.
 double critical_compression(const Layers& layers, int half)
 {
   VoxelBox box{ { { half, 1, layers.base + static_cast<int>(layers.film.size()) } },
@@ -57,13 +58,13 @@ Wrinkles find_wrinkles(const std::function<Layers(int)>& layers, int first, int 
   const std::size_t least = std::min_element(curve.y.begin(), curve.y.end()) - curve.y.begin();
   if (least == 0 || least + 1 == curve.y.size())
     return { curve.x[least], curve.y[least] };
-  // the minimum of a parabola through the three lowest points
+  // The minimum of the parabola through the three lowest points.
   const double left = curve.y[least - 1], middle = curve.y[least], right = curve.y[least + 1];
   const double shift = 0.5 * (left - right) / (left - 2 * middle + right);
   return { curve.x[least] + shift * (curve.x[1] - curve.x[0]), middle - 0.25 * (left - right) * shift };
 }
 
-// wrinkles of a film of `film` voxels on a deep base; wavelengths in units of the film's thickness
+// Wrinkles of a film of `film` voxels on a deep base; wavelengths in units of the film's thickness.
 Wrinkles film_wrinkles(double contrast, int film, Plot::Curve& curve)
 {
   const int expected = static_cast<int>(std::lround(expected_wrinkles(contrast).wavelength / 2));
@@ -139,15 +140,16 @@ void verify_wrinkling(const Backend&, Finding& finding)
     finding.checks.relative("critical compression, " + curve.name, "%", expected.compression, found.compression, 0.1);
     plot.curves.push_back(curve);
   }
-  // corneum of 48 MPa and 0.02 mm on dermis of 0.0814 MPa, in voxels of 0.02 mm
+  // The film is corneum of 48 MPa and 0.02 mm on dermis of 0.0814 MPa, in voxels of 0.02 mm.
   constexpr double skin_contrast = 48 / 0.0814, thickness = 0.02;
   Plot::Curve skin;
   const Wrinkles of_skin = film_wrinkles(skin_contrast, 1, skin);
   finding.checks.relative("corneum on dermis: wavelength", "mm", 0.731, thickness * of_skin.wavelength, 0.1);
   finding.checks.relative("corneum on dermis: critical compression", "%", 0.74, of_skin.compression, 0.1);
   finding.plots.emplace_back("wrinkling", plot);
-  // Columns: depth of hypodermis over bone [mm]; then wavelength [mm] and compression [%] by plate theory on an elastic
-  // layer bonded to bone, twice: ν = 0.49 and a plate that slides on the layer, ν = 0.5 and a plate that does not.
+  // Results of plate theory on an elastic layer that is bonded to bone. Columns: depth of the hypodermis [mm];
+  // wavelength [mm] and compression [%] with ν = 0.49 and a plate that slides on the layer; wavelength and compression
+  // with ν = 0.5 and a plate that does not slide.
   constexpr double plates[][5] = { { 5, 12.46, 7.13, 12.1, 7.3 },
                                    { 3, 10.44, 9.12, 9.7, 9.7 },
                                    { 2, 9.04, 11.61, 8.1, 13 } };

@@ -14,17 +14,17 @@ template <class T, class S>
 struct Fibre
 {
   T direction[3];  ///< unit vector at rest
-  T weight;        ///< fraction of the voxel times its tissue volume times the stress reference [N m]
+  T weight;        ///< fraction of the voxel that is this muscle, times tissue volume and stress reference [N m]
   S activation;    ///< 0..1
   S with_length;   ///< 1 if the tension-length relation applies, else 0
-  bool passive;    ///< has a passive part
+  bool passive;    ///< whether the fibre has a passive part
 };
 
 /// State of a fibre at a deformation.
 template <class T>
 struct FibreState
 {
-  T along[3];  ///< F a0
+  T along[3];  ///< F a0, the deformed fibre direction
   T squared;   ///< squared stretch
   T stress;    ///< second Piola-Kirchhoff stress times the weight [N m]
 };
@@ -45,14 +45,14 @@ FRONTALIS_LAW FibreState<T> fibre_state(const Fibre<T, S>& fibre, const Kinemati
   return state;
 }
 
-/// Whether the fibres of a muscle have any stress. Backends do not load those that have none.
+/// Whether the fibres of a muscle have any stress. Backends skip muscles that have none.
 template <class S>
 FRONTALIS_LAW bool has_stress(S activation, bool passive)
 {
   return activation != 0 || passive;
 }
 
-/// Adds the stress of the fibres: P += S (F a0) (x) a0.
+/// Adds the fibres' first Piola-Kirchhoff stress: P += S (F a0) (x) a0.
 template <class Voxel, class T>
 FRONTALIS_LAW void add_fibres(const Voxel& voxel, const Kinematics<T>& k, Matrix3<T>& P)
 {

@@ -38,7 +38,8 @@ FRONTALIS_LAW T kicked(const Kick<T>& kick, int axis, T v, T gain_over_mass, T f
   return (kick.keep * v + kick.impulse[axis]) - gain_over_mass * force;
 }
 
-/// Adds the effect of a load [N] to a step that was made without it: the step is linear in the force.
+/// Adds the effect of a load [N] to a node that was moved without the load. The result is exact, because a step is
+/// linear in the force.
 template <class T>
 FRONTALIS_LAW void add_load(T gain_over_mass, T dt, T force, T& u, T& v)
 {
@@ -62,11 +63,11 @@ struct NodeWork
   double constraint;  ///< work of constraints
 };
 
-/// Works that follow from the velocities before the step, after it without constraints (`free`) and after it [m/s].
-/// Each impulse acts along the mean of the velocities before and after the step, so that the sum of works is exactly
-/// the change of kinetic energy. beside, beside_before: displacement by constraints in addition to dt v, in this step
-/// and in the previous one [m]. The mean of the other forces over both steps did work along it too, which the
-/// constraints absorbed. damping [1/s], kick [s]: the first two arguments of kick_of().
+/// Works on a node from its velocities [m/s]: `before` the step, `after` it, and after it if there were no constraints
+/// (`free`). Each impulse acts along the mean of the velocities before and after the step, so that the works add up to
+/// the change of kinetic energy exactly. `beside`, `beside_before`: displacement [m] that constraints made in addition
+/// to dt v, in this step and in the previous one. The mean of the other forces over both steps did work along this
+/// displacement too, which the constraints absorbed. `damping` [1/s], `kick` [s]: the first two arguments of kick_of().
 FRONTALIS_LAW NodeWork node_work(double before, double free, double after, double beside, double beside_before,
                                  double damping, double kick)
 {

@@ -7,7 +7,7 @@ namespace frontalis
 namespace physics
 {
 
-/// A term of a voxel's Prony series.
+/// One term of a voxel's Prony series for viscosity.
 template <class T>
 struct ViscousTerm
 {

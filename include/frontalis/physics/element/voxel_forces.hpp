@@ -19,7 +19,7 @@ FRONTALIS_LAW void gauss_forces(const Voxel& voxel, T (&mode)[3][8], bool with_b
   for (auto& component : force)
     for (T& f : component)
       f = Number<T>::of(0);
-  // unrolled, so that the weights are constants
+  // The loop is unrolled so that the weights are constants.
   FRONTALIS_UNROLL
   for (int point = 0; point < 8; ++point)
   {
@@ -44,10 +44,10 @@ FRONTALIS_LAW void scalar_hourglass(const T& stiffness, T (&mode)[8])
       mode[m] = stiffness * mode[m];
 }
 
-/// Stress of a voxel at its centre, from all its effects; each effect that changes the stress has its line here. The
-/// hourglass modes become the forces on them, except that a voxel with scalar hourglass control may call
-/// scalar_hourglass() later, before stress_forces(), if one component at a time is faster. stiffness is 0 before the
-/// call; if `with_bound` is set, it becomes the bound of the largest eigenvalue of the present stiffness [N/m].
+/// Stress of a voxel at its centre, from all its effects; each effect that changes the stress has its line here. Also
+/// replaces the hourglass modes by the forces on them. A voxel with scalar hourglass control may instead call
+/// scalar_hourglass() later, before stress_forces(), if one component at a time is faster. `stiffness` must be 0 before
+/// the call; if `with_bound` is set, it becomes the bound of the largest eigenvalue of the present stiffness [N/m].
 template <class Voxel, class T>
 FRONTALIS_LAW Matrix3<T> element_stress(const Voxel& voxel, T (&mode)[3][8], bool with_bound, T& stiffness)
 {

@@ -41,7 +41,6 @@ FRONTALIS_LAW T hourglass_energy(const Voxel& voxel, const Kinematics<T>& k, con
   return Number<T>::of(0.5) * scalar * sum;
 }
 
-/// Evaluates a voxel at transformed displacements.
 template <class Voxel, class T>
 FRONTALIS_LAW VoxelReadings<T> voxel_readings(const Voxel& voxel, const T (&mode)[3][8])
 {

@@ -24,16 +24,16 @@ struct MaterialList
 };
 
 /// The table of materials: every solid that a scene can use. A solid is a struct of its parameters with a `description`
-/// and the functions add_stress, energy, tangent_stiffness and shear_modulus; with fibres, the first three take a
-/// pointer to their directions after the kinematics. New solids go to the end: model files store indices into the
-/// table.
+/// and the functions add_stress, energy, tangent_stiffness and shear_modulus. If the solid has fibres, the first three
+/// take a pointer to the fibre directions after the kinematics. New solids go to the end, because model files store
+/// indices into the table.
 using Materials = MaterialList<NeoHookean, MooneyRivlin, Ogden, FungExponential, HolzapfelGasserOgden, Guccione>;
 
 /// The solid with a material's numbers; description.hpp defines their order.
 template <template <class> class Solid, class T, std::size_t... I>
 FRONTALIS_LAW Solid<T> solid_of(const T* numbers, std::index_sequence<I...>)
 {
-  // the only solid that includes the volumetric part
+  // NeoHookean is the only solid that includes the volumetric part.
   if constexpr (std::is_same_v<Solid<T>, NeoHookean<T>>)
     return { numbers[0], numbers[bulk_modulus_slot] };
   else
@@ -86,7 +86,7 @@ constexpr Law find_law(MaterialList<Solids...>)
 
 }  // namespace physics
 
-/// The law of a solid: law_of<physics::Guccione>.
+/// The law of a solid, for instance law_of<physics::Guccione>.
 template <template <class> class Solid>
 constexpr Law law_of = physics::find_law<Solid>(physics::Materials{});
 static_assert(law_of<physics::NeoHookean> == Law::neo_hookean, "kernels have code of their own for the first law");

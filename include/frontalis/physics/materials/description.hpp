@@ -11,7 +11,7 @@ namespace frontalis
 /// The law of a material: its index in the table of materials (physics/materials/all.hpp), which model files store.
 enum class Law : std::uint8_t
 {
-  neo_hookean = 0  ///< the law that every kernel computes for all voxels, without a lookup
+  neo_hookean = 0  ///< the law that every kernel computes for all voxels, without a lookup in the table
 };
 
 namespace physics
@@ -23,7 +23,8 @@ constexpr int bulk_modulus_slot = 1;
 constexpr int first_direction = 5;
 constexpr int parameter_slots = first_direction + 2 * 3;
 
-/// Index of a law's parameter among a material's numbers: in order, except for the slot of the bulk modulus.
+/// Index of a law's parameter among a material's numbers: parameters stand in order and leave out the slot of the bulk
+/// modulus.
 FRONTALIS_LAW constexpr int slot_of(int parameter) { return parameter < bulk_modulus_slot ? parameter : parameter + 1; }
 
 /// The quantity and unit of a parameter.
@@ -34,7 +35,6 @@ enum class Measure : std::uint8_t
   young_modulus  ///< [Pa]; converted to the shear modulus with Poisson's ratio
 };
 
-/// Range of valid values of a parameter.
 struct Range
 {
   double lower = 0, upper = 0;
@@ -65,7 +65,7 @@ struct MaterialDescription
   /// Whether materials of this law in one voxel are replaced by one material with their mean parameters.
   bool averaged;
   int directions;  ///< number of fibre directions that a scene gives: 0, 1 or 2
-  /// In the order of the law's members; unused entries have no key.
+  /// Parameters in the order of the law's members; unused entries have no key.
   Parameter parameters[law_parameters_max];
 
   FRONTALIS_LAW constexpr int count() const

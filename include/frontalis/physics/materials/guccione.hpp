@@ -31,7 +31,7 @@ struct Guccione
   };
 };
 
-/// The shear modulus of the stiffest direction.
+/// Shear modulus [Pa] along the stiffest direction.
 template <class T>
 FRONTALIS_LAW T shear_modulus(const Guccione<T>& material)
 {
@@ -66,7 +66,7 @@ FRONTALIS_LAW GuccioneStrain<T> guccione_strain(const Guccione<T>& material, con
     }
     along[i] = E[i][0] * a[0] + E[i][1] * a[1] + E[i][2] * a[2];
   }
-  // with |E f|^2 = Eff^2 + Efs^2 + Efn^2: Q = on_fibre Eff^2 + 2 on_shear |E f|^2 + bt E : E
+  // With |E f|^2 = Eff^2 + Efs^2 + Efn^2, Q = on_fibre Eff^2 + 2 on_shear |E f|^2 + bt E : E.
   const T fibre_strain = a[0] * along[0] + a[1] * along[1] + a[2] * along[2];
   const T on_fibre = material.bf + material.bt - N::of(2) * material.bfs, on_shear = material.bfs - material.bt;
   s.Q = on_fibre * fibre_strain * fibre_strain +
@@ -108,8 +108,8 @@ FRONTALIS_LAW T energy(const Guccione<T>& material, const Kinematics<T>& k, cons
 }
 
 /// Bound of the tangent shear stiffness [Pa]: half of the second derivative of the energy along any unit change of F,
-/// c/2 e^Q ((dQ)^2 + d2Q). dQ is exact. d2Q is bounded by the norms of dE and d2E, and the squared norm of dE by its
-/// exact value at rest, 1, plus the growth of its bound since.
+/// c/2 e^Q ((dQ)^2 + d2Q). The first derivative dQ is exact. The second, d2Q, is bounded by the norms of dE and d2E;
+/// the squared norm of dE is bounded by its exact value at rest, 1, plus the growth of its bound since rest.
 template <class T>
 FRONTALIS_LAW T tangent_stiffness(const Guccione<T>& material, const Kinematics<T>& k, const Vec3<T>* fibre)
 {

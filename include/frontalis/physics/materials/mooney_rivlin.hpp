@@ -59,7 +59,8 @@ FRONTALIS_LAW T energy(const MooneyRivlin<T>& material, const Kinematics<T>& k)
 }
 
 /// Bound of the tangent shear stiffness [Pa]: half of the second derivative of the energy along any unit change of F.
-/// For g^2 I2, I2 = |cof F|^2, it is the exact value at rest, 4, plus the growth of its term-by-term bound since.
+/// The second derivative of g^2 I2, with I2 = |cof F|^2, is bounded by its exact value at rest, 4, plus the growth of
+/// its term-by-term bound since rest.
 template <class T>
 FRONTALIS_LAW T tangent_stiffness(const MooneyRivlin<T>& material, const Kinematics<T>& k)
 {

@@ -7,9 +7,9 @@
 namespace frontalis::physics
 {
 
-/// Isochoric Ogden solid of two terms: psi = sum_p mu_p / alpha_p (sum_a (g c_a)^(alpha_p / 2) - 3), c_a the
-/// eigenvalues of C and g = J^(-2/3) (Ogden 1972). Below a small J, a multiple of the identity that grows as J falls
-/// (C1) is added to C, so that no power of a vanishing stretch is taken.
+/// Isochoric Ogden solid of two terms: psi = sum_p mu_p / alpha_p (sum_a (g c_a)^(alpha_p / 2) - 3), with the
+/// eigenvalues c_a of C and g = J^(-2/3) (Ogden 1972). Below a small J, a multiple of the identity is added to C. It
+/// grows smoothly as J falls, so that no power of a vanishing stretch is taken.
 template <class T>
 struct Ogden
 {
@@ -37,7 +37,6 @@ FRONTALIS_LAW T shear_modulus(const Ogden<T>& material)
   return Number<T>::of(0.5) * (material.mu1 * material.alpha1 + material.mu2 * material.alpha2);
 }
 
-/// The two terms as arrays, for loops.
 template <class T>
 struct OgdenTerms
 {
