@@ -233,8 +233,10 @@ Vector Renderer::Implementation::shaded(const Hit& hit, const Light& light, cons
   const Vector fill = unit(camera.to_camera.turned(light.fill)), viewer = unit(along({}, -1, hit.point));
   const double matt = light.ambient + (lit ? light.key_strength * facing : 0) +
                       light.fill_strength * std::max(dot(hit.normal, fill), 0.0);
-  const double shine =
-      lit ? light.highlight * std::pow(std::max(dot(hit.normal, unit(along(key, 1, viewer))), 0.0), 24) : 0;
+  // an eye is moist: its highlight is small and bright
+  const bool moist = hit.label == eye_label;
+  const double mirrored = std::max(dot(hit.normal, unit(along(key, 1, viewer))), 0.0);
+  const double shine = lit ? light.highlight * (moist ? 5 * std::pow(mirrored, 300) : std::pow(mirrored, 24)) : 0;
   return { hit.colour[0] * matt + shine, hit.colour[1] * matt + shine, hit.colour[2] * matt + shine };
 }
 
