@@ -16,9 +16,11 @@ using Point = std::array<float, 3>;
 
 constexpr Point skin_colour{ { 0.87F, 0.66F, 0.55F } }, lip_colour{ { 0.74F, 0.39F, 0.37F } },
     brow_colour{ { 0.25F, 0.17F, 0.12F } }, hair_colour{ { 0.29F, 0.20F, 0.145F } },
-    teeth_colour{ { 0.93F, 0.91F, 0.84F } }, white_colour{ { 0.90F, 0.88F, 0.85F } };
-constexpr double lash_reach = 2.2e-3, lash_border = 1.2e-3;  // [m] from the eyeball; over the latter lashes fade out
-constexpr double upper_lashes = 0.8, lower_lashes = 0.35;    // fraction of the lids' edges that lashes cover
+    corner_colour{ { 0.66F, 0.38F, 0.35F } }, teeth_colour{ { 0.93F, 0.91F, 0.84F } },
+    white_colour{ { 0.90F, 0.88F, 0.85F } };
+// lashes cover the edges of the lids: how far from the eyeball [m], and how densely
+constexpr double upper_reach = 3.2e-3, lower_reach = 1.8e-3, upper_lashes = 0.85, lower_lashes = 0.35;
+constexpr double lash_border = 1.2e-3;                            // [m] over which they fade out
 constexpr double hair_thins_from = 2.5e-3, hair_thins_to = 9e-3;  // [m] from the border of its surface
 constexpr double lip_border = 1.5e-3;                             // [m] over which skin turns into lip
 constexpr double farthest = 40e-3;  // [m] from a part's landmarks; skin farther away belongs to no part
@@ -163,10 +165,11 @@ SkinAppearance skin_appearance(const std::vector<std::string>& landmarks, const 
     {
       const double x = p[0] - eye.centre[0], y = p[1] - eye.centre[1], z = p[2] - eye.centre[2];
       const double away = std::hypot(x, y, z) - eye.radius;
-      if (x > 0.25 * eye.radius && away < lash_reach)
+      const double reach = z > 0 ? upper_reach : lower_reach;
+      if (x > 0.25 * eye.radius && away < reach)
         appearance.colours[v] =
             blend(appearance.colours[v], brow_colour,
-                  (z > 0 ? upper_lashes : lower_lashes) * std::min(1.0, (lash_reach - away) / lash_border));
+                  (z > 0 ? upper_lashes : lower_lashes) * std::min(1.0, (reach - away) / lash_border));
     }
     if (hair[v] > hairy)
       appearance.labels[v] = label_of_part(p[1] < 0 ? "brow_right" : "brow_left");
@@ -258,7 +261,7 @@ RenderBall socket_of(const RenderBall& eyeball)
 {
   const auto& [x, y, z] = eyeball.centre;
   const double r = eyeball.radius;
-  return { { x - 0.55 * r, y - std::copysign(0.2 * r, y), z }, 1.3 * r, inside_colour, inside_label };
+  return { { x - 0.55 * r, y - std::copysign(0.2 * r, y), z }, 1.3 * r, corner_colour, inside_label };
 }
 
 std::vector<RenderBall> resting_eyes(const Model& model)

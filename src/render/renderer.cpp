@@ -68,6 +68,8 @@ void check(const RenderMesh& mesh)
         throw Error("a mesh to be drawn has a triangle with a vertex that does not exist");
 }
 
+}  // namespace
+
 std::vector<std::array<float, 3>> normals_of(const RenderMesh& mesh)
 {
   std::vector<Vector> sums(mesh.vertices.size());
@@ -84,6 +86,9 @@ std::vector<std::array<float, 3>> normals_of(const RenderMesh& mesh)
     normals.push_back(narrow(unit(sum)));
   return normals;
 }
+
+namespace
+{
 
 // a ray from a point in a direction, which need not have length 1
 void set(RTCRay& ray, const Vector& from, const Vector& direction, double far)
