@@ -16,11 +16,17 @@ using Point = std::array<float, 3>;
 
 constexpr Point skin_colour{ { 0.87F, 0.66F, 0.55F } }, lip_colour{ { 0.74F, 0.39F, 0.37F } },
     brow_colour{ { 0.25F, 0.17F, 0.12F } }, hair_colour{ { 0.29F, 0.20F, 0.145F } },
-    corner_colour{ { 0.66F, 0.38F, 0.35F } }, teeth_colour{ { 0.93F, 0.91F, 0.84F } },
+    corner_colour{ { 0.60F, 0.40F, 0.36F } }, teeth_colour{ { 0.93F, 0.91F, 0.84F } },
     white_colour{ { 0.90F, 0.88F, 0.85F } };
-// lashes cover the edges of the lids: how far from the eyeball [m], and how densely
-constexpr double upper_reach = 3.2e-3, lower_reach = 1.8e-3, upper_lashes = 0.85, lower_lashes = 0.35;
-constexpr double lash_border = 1.2e-3;                            // [m] over which they fade out
+// Lashes cover the edges of the lids, which are parabolas as seen from the front. Lengths over the eyeball's radius.
+struct Lashes
+{
+  double height;           // of the middle of the edge over that of the eyeball's
+  double width, softness;  // of the band along the edge
+  double density;
+};
+constexpr Lashes upper_lashes{ 0.33, 0.15, 0.06, 0.85 }, lower_lashes{ -0.42, 0.07, 0.06, 0.35 };
+constexpr double half_fissure = 1.25, lash_reach = 0.22;  // half the length of the fissure; distance from the eyeball
 constexpr double hair_thins_from = 2.5e-3, hair_thins_to = 9e-3;  // [m] from the border of its surface
 constexpr double lip_border = 1.5e-3;                             // [m] over which skin turns into lip
 constexpr double farthest = 40e-3;  // [m] from a part's landmarks; skin farther away belongs to no part
@@ -163,13 +169,14 @@ SkinAppearance skin_appearance(const std::vector<std::string>& landmarks, const 
     appearance.colours[v] = blend(appearance.colours[v], brow_colour, double(hair[v]));
     for (const RenderBall& eye : eyes)
     {
-      const double x = p[0] - eye.centre[0], y = p[1] - eye.centre[1], z = p[2] - eye.centre[2];
-      const double away = std::hypot(x, y, z) - eye.radius;
-      const double reach = z > 0 ? upper_reach : lower_reach;
-      if (x > 0.25 * eye.radius && away < reach)
-        appearance.colours[v] =
-            blend(appearance.colours[v], brow_colour,
-                  (z > 0 ? upper_lashes : lower_lashes) * std::min(1.0, (reach - away) / lash_border));
+      const double r = eye.radius, x = (p[0] - eye.centre[0]) / r, y = (p[1] - eye.centre[1]) / r,
+                   z = (p[2] - eye.centre[2]) / r;
+      if (x < 0.25 || std::hypot(x, y, z) > 1 + lash_reach)
+        continue;
+      const Lashes& lashes = z > 0 ? upper_lashes : lower_lashes;
+      const double edge = lashes.height * std::max(0.0, 1 - std::pow(y / half_fissure, 2));
+      const double inside = (lashes.width - std::abs(z - edge)) / lashes.softness;
+      appearance.colours[v] = blend(appearance.colours[v], brow_colour, lashes.density * std::clamp(inside, 0.0, 1.0));
     }
     if (hair[v] > hairy)
       appearance.labels[v] = label_of_part(p[1] < 0 ? "brow_right" : "brow_left");
