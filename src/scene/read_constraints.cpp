@@ -80,18 +80,18 @@ constexpr ConstraintKind constraint_kinds[] = {
       read_friction(mapping, constraint);
       constraint.pushed = read_push(mapping.optional("pushed"));
     } },
+  { SceneConstraint::Kind::self_contact, "self_contact",
+    [](Mapping& mapping, SceneConstraint& constraint, const SceneNames&)
+    {
+      constraint.crop = read_region(mapping.optional("crop"));
+      read_friction(mapping, constraint);
+    } },
   // a body of contact within whose reach there is no tissue
   { SceneConstraint::Kind::contact, "shown",
     [](Mapping& mapping, SceneConstraint& constraint, const SceneNames&)
     {
       constraint.within = 0;
       constraint.bone = mapping.optional("bone").name();
-    } },
-  { SceneConstraint::Kind::self_contact, "self_contact",
-    [](Mapping& mapping, SceneConstraint& constraint, const SceneNames&)
-    {
-      constraint.crop = read_region(mapping.optional("crop"));
-      read_friction(mapping, constraint);
     } },
 };
 

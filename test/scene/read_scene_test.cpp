@@ -307,6 +307,10 @@ TEST(EveryKey, constraints_and_loads)
   EXPECT_EQ(scene.constraints[3].kind, SceneConstraint::Kind::self_contact);
   EXPECT_EQ(scene.constraints[3].surfaces, (std::vector<std::string>{ "box", "sphere" }));
   EXPECT_EQ(scene.constraints[3].friction, 0.4);
+  // what is only shown is a body of contact within whose reach there is no tissue
+  EXPECT_EQ(scene.constraints[4].kind, SceneConstraint::Kind::contact);
+  EXPECT_EQ(scene.constraints[4].within, 0);
+  EXPECT_EQ(scene.constraints[4].bone, "finger");
 
   ASSERT_EQ(scene.loads.size(), 3U);
   EXPECT_EQ(scene.loads[0].kind, SceneLoad::Kind::traction);
