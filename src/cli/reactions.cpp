@@ -9,12 +9,24 @@
 
 namespace frontalis
 {
+namespace
+{
+
+/// Whether tissue touches a body: others are only shown.
+bool is_touched(const Model& model, std::size_t body)
+{
+  return body >= model.contacts.size() || !model.contacts[body].points.empty();
+}
+
+}  // namespace
 
 void print_reactions(const Model& model, const std::vector<BodyFrame>& bodies)
 {
   const std::vector<TouchedBody> touched = touched_bodies(model);
   for (std::size_t c = 0; c < bodies.size(); ++c)
   {
+    if (!is_touched(model, c))
+      continue;
     const auto& [force, moment] = bodies[c].reaction;
     fmt::print(
         "reaction           {}: {:+.4g} N forward, {:+.4g} N left, {:+.4g} N up; moment {:+.4g}, {:+.4g}, {:+.4g} "
@@ -29,6 +41,8 @@ std::string reaction_rows(const Model& model, int frame, double time, const std:
   const std::vector<TouchedBody> touched = touched_bodies(model);
   for (std::size_t c = 0; c < bodies.size(); ++c)
   {
+    if (!is_touched(model, c))
+      continue;
     const auto& [force, moment] = bodies[c].reaction;
     rows += fmt::format("{},{:.6f},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", frame, time, touched[c].name,
                         force[0], force[1], force[2], moment[0], moment[1], moment[2]);
@@ -52,6 +66,8 @@ void ReactionPlot::write() const
   const std::vector<TouchedBody> touched = touched_bodies(model_);
   for (std::size_t c = 0; c < touched.size(); ++c)
   {
+    if (!is_touched(model_, c))
+      continue;
     const std::string& name = touched[c].name;
     Plot::Curve curves[] = { { name + ": magnitude", {}, {}, Plot::Style::strong },
                              { "forward", {}, {}, Plot::Style::line },

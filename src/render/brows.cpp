@@ -13,11 +13,14 @@ namespace
 
 using Point = std::array<double, 3>;
 
-constexpr double half_width = 4.0e-3;     // half the width of the band at its inner end [m]
+constexpr double half_width = 3.8e-3;     // half the width of the band where it is widest [m]
 constexpr double inner_length = 9.0e-3;   // length of the band beyond the innermost landmark [m]
 constexpr double bare = 12e-3;            // distance from the midline within which the band does not extend [m]
 constexpr double outer_length = 11.0e-3;  // length of the band beyond the outermost landmark [m]
-constexpr double density = 0.85;          // fraction of the skin that hair covers in the middle of the band
+constexpr double inner_drop = 2e-3;       // height by which that end is lower [m]
+constexpr double outer_drop = 3.5e-3;     // and the outer one [m]
+constexpr double density = 0.82;          // fraction of the skin that hair covers in the middle of the band
+constexpr double widest = 0.3;            // where the band is widest and densest, as a fraction of its length
 
 Point blend(const Point& a, const Point& b, double share)
 {
@@ -51,6 +54,8 @@ std::vector<Point> brow_line(const std::vector<std::string>& landmarks, const st
   const double free = std::clamp(std::abs(points[0][1]) - bare, 1e-4, inner_length);
   points.insert(points.begin(), blend(points[0], points[1], -free / inner));
   points.push_back(blend(points[points.size() - 2], points.back(), 1 + outer_length / outer));
+  points.front()[2] -= inner_drop;
+  points.back()[2] -= outer_drop;
   return points;
 }
 
@@ -91,11 +96,13 @@ std::vector<float> brow_cover(const std::vector<std::string>& landmarks,
       continue;
     for (std::size_t vertex = 0; vertex < cover.size(); ++vertex)
     {
-      // hair is dense in the middle and soft at the border of the band, which is narrower towards the temple
+      // hair is dense in the middle and soft at the border of the band, which is narrower and thinner towards its ends
       const auto [off, along] = closest_on_line(points, wide(vertices[vertex]));
-      const double width = half_width * (1 - 0.55 * along);
-      const double share = std::clamp((1.5 * width - off) / width, 0.0, 1.0);
-      cover[vertex] = std::max(cover[vertex], static_cast<float>(density * share * share * (3 - 2 * share)));
+      const double from_widest = along < widest ? (widest - along) / widest : (along - widest) / (1 - widest);
+      const double width = half_width * (1 - (along < widest ? 0.25 : 0.7) * from_widest);
+      const double share = std::clamp((1.5 * width - off) / (1.4 * width), 0.0, 1.0);
+      const double thinned = density * (1 - (along < widest ? 0.55 : 0.3) * from_widest * from_widest);
+      cover[vertex] = std::max(cover[vertex], static_cast<float>(thinned * share * share * (3 - 2 * share)));
     }
   }
   return cover;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace frontalis
 {
@@ -14,10 +15,22 @@ namespace
 using Point = std::array<float, 3>;
 
 constexpr Point skin_colour{ { 0.87F, 0.66F, 0.55F } }, lip_colour{ { 0.74F, 0.39F, 0.37F } },
-    brow_colour{ { 0.27F, 0.18F, 0.13F } };
-constexpr double lip_border = 1.5e-3;  // [m] over which skin turns into lip
-constexpr double farthest = 40e-3;     // [m] from a part's landmarks; skin farther away belongs to no part
-constexpr float hairy = 0.3F;          // what hair covers by more than this is labelled as brow
+    brow_colour{ { 0.25F, 0.17F, 0.12F } }, hair_colour{ { 0.29F, 0.20F, 0.145F } },
+    corner_colour{ { 0.60F, 0.40F, 0.36F } }, teeth_colour{ { 0.93F, 0.91F, 0.84F } },
+    white_colour{ { 0.90F, 0.88F, 0.85F } };
+// Lashes cover the edges of the lids, which are parabolas as seen from the front. Lengths over the eyeball's radius.
+struct Lashes
+{
+  double height;           // of the middle of the edge over that of the eyeball's
+  double width, softness;  // of the band along the edge
+  double density;
+};
+constexpr Lashes upper_lashes{ 0.33, 0.15, 0.06, 0.85 }, lower_lashes{ -0.42, 0.07, 0.06, 0.35 };
+constexpr double half_fissure = 1.25, lash_reach = 0.22;  // half the length of the fissure; distance from the eyeball
+constexpr double hair_thins_from = 2.5e-3, hair_thins_to = 9e-3;  // [m] from the border of its surface
+constexpr double lip_border = 1.5e-3;                             // [m] over which skin turns into lip
+constexpr double farthest = 40e-3;  // [m] from a part's landmarks; skin farther away belongs to no part
+constexpr float hairy = 0.3F;       // what hair covers by more than this is labelled as brow
 
 // Parts of the skin: a vertex belongs to the part that has the closest landmark. Lips and brows are painted.
 struct Part
@@ -42,7 +55,8 @@ const std::vector<Part>& parts()
                                       { "lids_left", { "lid_upper_left", "lid_lower_left" } },
                                       { "lids_right", { "lid_upper_right", "lid_lower_right" } },
                                       { "cheek_left", { "malar_left", "cheek_left" } },
-                                      { "cheek_right", { "malar_right", "cheek_right" } } };
+                                      { "cheek_right", { "malar_right", "cheek_right" } },
+                                      { "hair", {} } };
   return all;
 }
 
@@ -81,8 +95,36 @@ std::vector<std::string> label_names()
   return names;
 }
 
+BodyAppearance body_appearance(const std::string& name, bool only_shown, const TriangleMesh& surface)
+{
+  const bool is_hair = only_shown && name == "hair";
+  BodyAppearance look;
+  look.label = is_hair ? label_of_part(name) : static_cast<std::uint8_t>(only_shown ? skin_label : body_label);
+  look.colour = is_hair ? hair_colour : only_shown ? skin_colour : teeth_colour;
+  look.colours.assign(surface.vertices.size(), look.colour);
+  if (!is_hair)
+    return look;
+  // an edge of one triangle alone is at the border
+  std::set<std::array<std::int32_t, 2>> open;
+  for (const auto& t : surface.triangles)
+    for (std::size_t c = 0; c < 3; ++c)
+      if (open.erase({ { t[(c + 1) % 3], t[c] } }) == 0)
+        open.insert({ { t[c], t[(c + 1) % 3] } });
+  for (std::size_t v = 0; v < surface.vertices.size(); ++v)
+  {
+    double closest = hair_thins_to;
+    const auto& p = surface.vertices[v];
+    for (const auto& edge : open)
+      if (const auto& q = surface.vertices[static_cast<std::size_t>(edge[0])]; std::abs(p[0] - q[0]) < closest)
+        closest = std::min(closest, std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]));
+    const double share = std::clamp((closest - hair_thins_from) / (hair_thins_to - hair_thins_from), 0.0, 1.0);
+    look.colours[v] = blend(skin_colour, hair_colour, share * (2 - share));
+  }
+  return look;
+}
+
 SkinAppearance skin_appearance(const std::vector<std::string>& landmarks, const std::vector<Point>& places,
-                               const std::vector<Point>& vertices)
+                               const std::vector<Point>& vertices, const std::vector<RenderBall>& eyes)
 {
   const auto find = [&](const std::string& name)
   {
@@ -124,27 +166,79 @@ SkinAppearance skin_appearance(const std::vector<std::string>& landmarks, const 
       if (inside > 0)
         appearance.labels[v] = label_of_part(from_corner > 0 ? "lip_upper" : "lip_lower");
     }
-    appearance.colours[v] = blend(appearance.colours[v], brow_colour, hair[v]);
+    appearance.colours[v] = blend(appearance.colours[v], brow_colour, double(hair[v]));
+    for (const RenderBall& eye : eyes)
+    {
+      const double r = eye.radius, x = (p[0] - eye.centre[0]) / r, y = (p[1] - eye.centre[1]) / r,
+                   z = (p[2] - eye.centre[2]) / r;
+      if (x < 0.25 || std::hypot(x, y, z) > 1 + lash_reach)
+        continue;
+      const Lashes& lashes = z > 0 ? upper_lashes : lower_lashes;
+      const double edge = lashes.height * std::max(0.0, 1 - std::pow(y / half_fissure, 2));
+      const double inside = (lashes.width - std::abs(z - edge)) / lashes.softness;
+      appearance.colours[v] = blend(appearance.colours[v], brow_colour, lashes.density * std::clamp(inside, 0.0, 1.0));
+    }
     if (hair[v] > hairy)
       appearance.labels[v] = label_of_part(p[1] < 0 ? "brow_right" : "brow_left");
   }
   return appearance;
 }
 
-std::vector<Eyeball> eyeballs(const Model& model, const std::function<RigidTransform(std::size_t bone)>& motion)
+namespace
 {
-  // A white ball with the cap of a brown one, the iris, and on it the cap of a black one, the pupil. Radii of the
-  // balls, and of the circles in which they meet the ball before, over that of the eyeball: an iris of 11.7 mm and a
-  // pupil of 4.4 mm on a ball of 24.2 mm. The caps are flatter than a cornea, whose radius is 7.8 mm: tissue slides on
-  // the white ball, and a cornea would show through closed lids.
-  struct Cap
+
+/// An iris of 11.7 mm with a pupil of 4.2 mm, on a ball of 24.2 mm: rings of points about the axis x through the middle
+/// of the ball, over whose radius all lengths are. The cap is flatter than a cornea, whose radius is 7.8 mm: tissue
+/// slides on the white ball, and a cornea would show through closed lids.
+RenderMesh iris_cap()
+{
+  struct Ring
   {
-    double radius, rim;
+    double radius;
     Point colour;
   };
-  constexpr std::array<Cap, 3> caps{ { { 1, 0, { { 0.92F, 0.90F, 0.87F } } },
-                                       { 0.8, 0.483, { { 0.30F, 0.20F, 0.12F } } },
-                                       { 0.65, 0.18, { { 0.02F, 0.02F, 0.02F } } } } };
+  const Point pupil{ { 0.02F, 0.02F, 0.02F } }, inner{ { 0.42F, 0.28F, 0.16F } }, outer{ { 0.30F, 0.19F, 0.11F } },
+      limbus{ { 0.13F, 0.09F, 0.07F } };
+  const std::array<Ring, 10> rings{ { { 0, pupil },
+                                      { 0.08, pupil },
+                                      { 0.165, pupil },
+                                      { 0.185, inner },
+                                      { 0.27, inner },
+                                      { 0.36, outer },
+                                      { 0.425, outer },
+                                      { 0.455, limbus },
+                                      { 0.475, limbus },
+                                      { 0.50, white_colour } } };
+  constexpr int columns = 72;
+  constexpr double curvature = 1 / 0.8, turn = 2 * 3.14159265358979323846 / columns, above = 0.004;
+  const auto height = [](double radius) { return std::sqrt(1 - radius * radius * curvature * curvature) / curvature; };
+  const double rim = rings.back().radius, base = std::sqrt(1 - rim * rim) - height(rim) + above;
+  RenderMesh mesh;
+  for (std::size_t r = 0; r < rings.size(); ++r)
+    for (int c = 0; c < columns; ++c)
+    {
+      const double radius = rings[r].radius;
+      mesh.vertices.push_back({ static_cast<float>(base + height(radius)),
+                                static_cast<float>(radius * std::cos(turn * c)),
+                                static_cast<float>(radius * std::sin(turn * c)) });
+      // fibres of the iris
+      const double light = r > 2 && r < 7 ? 0.12 * std::sin(2.3 * c + double(r)) * std::sin(0.7 * c * c) : 0;
+      mesh.colours.push_back(blend(rings[r].colour, inner, std::abs(light)));
+      const auto next = (c + 1) % columns, here = static_cast<std::int32_t>(r) * columns;
+      if (r + 1 == rings.size())
+        continue;
+      mesh.triangles.push_back({ here + c, here + columns + c, here + columns + next });
+      mesh.triangles.push_back({ here + c, here + columns + next, here + next });
+    }
+  mesh.labels.assign(mesh.vertices.size(), eye_label);
+  return mesh;
+}
+
+}  // namespace
+
+std::vector<Eyeball> eyeballs(const Model& model, const std::function<RigidTransform(std::size_t bone)>& motion)
+{
+  static const RenderMesh cap = iris_cap();
   std::vector<Eyeball> out;
   for (const ConstraintSurface& eye : model.constraint_surfaces)
   {
@@ -153,18 +247,17 @@ std::vector<Eyeball> eyeballs(const Model& model, const std::function<RigidTrans
         model.bones[bone].compare(0, 3, "eye") != 0)
       continue;
     const std::array<double, 3> centre = model.to_face(eye.field.origin);
+    const double radius = eye.field.radius;
     const RigidTransform pose = motion(bone);
     Eyeball& ball = out.emplace_back();
     ball.bone = bone;
-    double ahead = 0, radius = 1;  // of the ball before
-    for (std::size_t n = 0; n < caps.size(); ++n)
+    ball.ball = { pose(centre), radius, white_colour, eye_label };
+    ball.iris = cap;
+    for (Point& p : ball.iris.vertices)
     {
-      const Cap& cap = caps[n];
-      const auto from_rim = [&](double r) { return std::sqrt(r * r - cap.rim * cap.rim); };
-      ahead += from_rim(radius) - from_rim(cap.radius);
-      radius = cap.radius;
-      ball.balls[n] = { pose(std::array<double, 3>{ { centre[0] + ahead * eye.field.radius, centre[1], centre[2] } }),
-                        cap.radius * eye.field.radius, cap.colour, eye_label };
+      const auto now = pose(
+          std::array<double, 3>{ { centre[0] + radius * p[0], centre[1] + radius * p[1], centre[2] + radius * p[2] } });
+      p = { { static_cast<float>(now[0]), static_cast<float>(now[1]), static_cast<float>(now[2]) } };
     }
   }
   return out;
@@ -175,12 +268,22 @@ RenderBall socket_of(const RenderBall& eyeball)
 {
   const auto& [x, y, z] = eyeball.centre;
   const double r = eyeball.radius;
-  return { { x - 0.55 * r, y - std::copysign(0.2 * r, y), z }, 1.3 * r, inside_colour, inside_label };
+  return { { x - 0.55 * r, y - std::copysign(0.2 * r, y), z }, 1.3 * r, corner_colour, inside_label };
+}
+
+std::vector<RenderBall> resting_eyes(const Model& model)
+{
+  std::vector<RenderBall> balls;
+  for (const Eyeball& eye : eyeballs(model, [](std::size_t) { return RigidTransform(); }))
+    balls.push_back(eye.ball);
+  return balls;
 }
 
 FaceAppearance::FaceAppearance(const Model& model, const SkinState& rest)
-    : model_(model), appearance_(skin_appearance(model.landmarks, rest.landmarks, rest.vertices))
+    : model_(model), appearance_(skin_appearance(model.landmarks, rest.landmarks, rest.vertices, resting_eyes(model)))
 {
+  for (const Contact& contact : model.contacts)
+    bodies_.push_back(body_appearance(contact.name, contact.points.empty(), contact.shape));
 }
 
 RenderScene FaceAppearance::scene(const SkinState& skin, const Controls& controls) const
@@ -194,8 +297,9 @@ RenderScene FaceAppearance::scene(const SkinState& skin, const Controls& control
   for (const Eyeball& eye :
        eyeballs(model_, [&](std::size_t bone) { return motion_in_face(model_, controls.bone[bone]); }))
   {
-    scene.balls.push_back(socket_of(eye.balls[0]));
-    scene.balls.insert(scene.balls.end(), eye.balls.begin(), eye.balls.end());
+    scene.balls.push_back(socket_of(eye.ball));
+    scene.balls.push_back(eye.ball);
+    scene.meshes.push_back(eye.iris);
     is_ball[eye.bone] = true;
   }
   const std::vector<BodyShape> bodies = body_shapes(model_);
@@ -207,8 +311,8 @@ RenderScene FaceAppearance::scene(const SkinState& skin, const Controls& control
     const TriangleMesh& surface = *bodies[b].surface;
     RenderMesh& mesh = scene.meshes.emplace_back();
     mesh.triangles = surface.triangles;
-    mesh.colours.assign(surface.vertices.size(), body_colour);
-    mesh.labels.assign(surface.vertices.size(), body_label);
+    mesh.colours = bodies_[b].colours;
+    mesh.labels.assign(surface.vertices.size(), bodies_[b].label);
     mesh.vertices.reserve(surface.vertices.size());
     for (const auto& p : surface.vertices)
     {

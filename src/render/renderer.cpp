@@ -68,6 +68,8 @@ void check(const RenderMesh& mesh)
         throw Error("a mesh to be drawn has a triangle with a vertex that does not exist");
 }
 
+}  // namespace
+
 std::vector<std::array<float, 3>> normals_of(const RenderMesh& mesh)
 {
   std::vector<Vector> sums(mesh.vertices.size());
@@ -84,6 +86,9 @@ std::vector<std::array<float, 3>> normals_of(const RenderMesh& mesh)
     normals.push_back(narrow(unit(sum)));
   return normals;
 }
+
+namespace
+{
 
 // a ray from a point in a direction, which need not have length 1
 void set(RTCRay& ray, const Vector& from, const Vector& direction, double far)
@@ -233,8 +238,10 @@ Vector Renderer::Implementation::shaded(const Hit& hit, const Light& light, cons
   const Vector fill = unit(camera.to_camera.turned(light.fill)), viewer = unit(along({}, -1, hit.point));
   const double matt = light.ambient + (lit ? light.key_strength * facing : 0) +
                       light.fill_strength * std::max(dot(hit.normal, fill), 0.0);
-  const double shine =
-      lit ? light.highlight * std::pow(std::max(dot(hit.normal, unit(along(key, 1, viewer))), 0.0), 24) : 0;
+  // an eye is moist: its highlight is small and bright
+  const bool moist = hit.label == eye_label;
+  const double mirrored = std::max(dot(hit.normal, unit(along(key, 1, viewer))), 0.0);
+  const double shine = lit ? light.highlight * (moist ? 5 * std::pow(mirrored, 300) : std::pow(mirrored, 24)) : 0;
   return { hit.colour[0] * matt + shine, hit.colour[1] * matt + shine, hit.colour[2] * matt + shine };
 }
 

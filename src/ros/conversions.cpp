@@ -2,6 +2,7 @@
 
 #include "frontalis/error.hpp"
 #include "frontalis/render/face_appearance.hpp"
+#include "frontalis/ros/shading.hpp"
 #include "frontalis/runner/face_frame.hpp"
 #include "frontalis/solver/rigid_motion.hpp"
 
@@ -37,6 +38,34 @@ void set(geometry_msgs::Quaternion& message, const tf2::Quaternion& rotation)
   message.y = rotation.y();
   message.z = rotation.z();
   message.w = rotation.w();
+}
+
+std_msgs::ColorRGBA opaque(const std::array<float, 3>& colour)
+{
+  std_msgs::ColorRGBA out;
+  out.r = colour[0];
+  out.g = colour[1];
+  out.b = colour[2];
+  out.a = 1;
+  return out;
+}
+
+/// Colours of a surface at rest, lit as the skin is, so that the two join without a seam.
+SkinColours shaded(const Model& model, const TriangleMesh& surface, const SkinColours& natural)
+{
+  RenderMesh mesh;
+  mesh.triangles = surface.triangles;
+  for (const auto& vertex : surface.vertices)
+  {
+    const auto p = model.to_face(vertex);
+    mesh.vertices.push_back({ { static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]) } });
+  }
+  SkinState state;
+  state.normals = normals_of(mesh);
+  state.vertices = std::move(mesh.vertices);
+  SkinColours out;
+  SkinShading(surface, natural).colours(state, {}, out);
+  return out;
 }
 
 }  // namespace
@@ -230,10 +259,14 @@ visualization_msgs::MarkerArray to_bodies(const Model& model, const std::string&
     marker.action = visualization_msgs::Marker::ADD;
     marker.pose.orientation.w = 1;
     marker.scale.x = marker.scale.y = marker.scale.z = 1;
-    marker.color.r = body_colour[0];
-    marker.color.g = body_colour[1];
-    marker.color.b = body_colour[2];
+    // the shapes are those of the contacts, in their order
+    const bool only_shown = model.contacts[out.markers.size() - 2].points.empty();
+    const BodyAppearance look = body_appearance(shape.name, only_shown, *shape.surface);
+    marker.color.r = look.colour[0];
+    marker.color.g = look.colour[1];
+    marker.color.b = look.colour[2];
     marker.color.a = 1;
+    const SkinColours colours = only_shown ? shaded(model, *shape.surface, look.colours) : SkinColours();
     const auto centre = model.to_face(shape.centre);
     for (const auto& triangle : shape.surface->triangles)
       for (const auto vertex : triangle)
@@ -242,6 +275,8 @@ visualization_msgs::MarkerArray to_bodies(const Model& model, const std::string&
         for (std::size_t axis = 0; axis < 3; ++axis)
           p[axis] -= centre[axis];
         set(marker.points.emplace_back(), p);
+        if (!colours.empty())
+          marker.colors.push_back(opaque(colours[vertex]));
       }
   }
   return out;
@@ -254,21 +289,31 @@ visualization_msgs::MarkerArray to_eyeballs(const Model& model, const std::vecto
   if (bones.size() != model.bones.size())
     return out;
   for (const Eyeball& eye : eyeballs(model, [&](std::size_t bone) { return bones[bone].pose; }))
-    for (const RenderBall& ball : eye.balls)
-    {
-      visualization_msgs::Marker& marker = out.markers.emplace_back();
-      marker.ns = model.bones[eye.bone];
-      marker.id = static_cast<std::int32_t>(&ball - eye.balls.data());
-      marker.type = visualization_msgs::Marker::SPHERE;
-      marker.action = visualization_msgs::Marker::ADD;
-      set(marker.pose.position, ball.centre);
-      marker.pose.orientation.w = 1;
-      marker.scale.x = marker.scale.y = marker.scale.z = 2 * ball.radius;
-      marker.color.r = ball.colour[0];
-      marker.color.g = ball.colour[1];
-      marker.color.b = ball.colour[2];
-      marker.color.a = 1;
-    }
+  {
+    visualization_msgs::Marker marker;
+    marker.ns = model.bones[eye.bone];
+    marker.action = visualization_msgs::Marker::ADD;
+    marker.pose.orientation.w = 1;
+    marker.scale.x = marker.scale.y = marker.scale.z = 1;
+    marker.color = opaque(eye.ball.colour);
+    marker.type = visualization_msgs::Marker::TRIANGLE_LIST;
+    marker.id = 1;
+    for (const auto& triangle : eye.iris.triangles)
+      for (const auto vertex : triangle)
+      {
+        set(marker.points.emplace_back(), eye.iris.vertices[vertex]);
+        marker.colors.push_back(opaque(eye.iris.colours[vertex]));
+      }
+    visualization_msgs::Marker ball = marker;
+    ball.type = visualization_msgs::Marker::SPHERE;
+    ball.id = 0;
+    ball.points.clear();
+    ball.colors.clear();
+    set(ball.pose.position, eye.ball.centre);
+    ball.scale.x = ball.scale.y = ball.scale.z = 2 * eye.ball.radius;
+    out.markers.push_back(ball);
+    out.markers.push_back(marker);
+  }
   return out;
 }
 

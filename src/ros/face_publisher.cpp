@@ -63,8 +63,8 @@ void FacePublisher::start(std::shared_ptr<const Model> model, const std::string&
   backend_ = backend;
   const SkinState rest = rest_in_face(*model_);
   rest_ = rest.vertices;
-  shading_ =
-      std::make_unique<SkinShading>(model_->skin, skin_appearance(model_->landmarks, rest.landmarks, rest_).colours);
+  shading_ = std::make_unique<SkinShading>(
+      model_->skin, skin_appearance(model_->landmarks, rest.landmarks, rest_, resting_eyes(*model_)).colours);
   topology_.publish(to_mesh(*model_));
   landmark_vertices_ = landmark_vertices(*model_);
   standard_landmarks_ = standard_landmarks(*model_);
@@ -259,6 +259,9 @@ void FacePublisher::publish_caption(const std::string& text, const std::string& 
     const auto [lowest, highest] = std::minmax_element(rest_.begin(), rest_.end(), below);
     lower = (*lowest)[2];
     upper = (*highest)[2];
+    for (const Contact& contact : model_->contacts)
+      for (const auto& vertex : contact.shape.vertices)
+        upper = std::max(upper, static_cast<float>(model_->to_face(vertex)[2]));
   }
   const double line = 0.045 * double(upper - lower);
   visualization_msgs::Marker marker;

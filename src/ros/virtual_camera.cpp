@@ -1,6 +1,7 @@
 #include "frontalis/ros/virtual_camera.hpp"
 
 #include "frontalis/ros/conversions.hpp"
+#include "ros/marker_meshes.hpp"
 #include "ros/parameter_reader.hpp"
 
 #include <fmt/format.h>
@@ -219,7 +220,11 @@ void VirtualCamera::find_appearance(const SkinState& skin)
                                           [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
     places.push_back(rest[static_cast<std::size_t>(closest - skin.vertices.begin())]);
   }
-  appearance_ = skin_appearance(inputs_.state->landmark, places, rest);
+  std::vector<RenderBall> eyes;
+  for (const auto& marker : inputs_.eyes->markers)
+    if (marker.type == visualization_msgs::Marker::SPHERE)
+      eyes.push_back(ball_of(marker));
+  appearance_ = skin_appearance(inputs_.state->landmark, places, rest, eyes);
   triangles_.clear();
   for (const auto& triangle : inputs_.topology->triangles)
   {
@@ -252,17 +257,25 @@ RigidTransform VirtualCamera::transform(const std::string& to, const std::string
 
 void VirtualCamera::add_bodies(const std::string& face_frame, const ros::Time& stamp, RenderScene& scene)
 {
-  for (const auto& marker : inputs_.bodies->markers)
+  const auto& markers = inputs_.bodies->markers;
+  if (body_meshes_of_ != inputs_.bodies)
   {
+    body_meshes_.clear();
+    std::transform(markers.begin(), markers.end(), std::back_inserter(body_meshes_), mesh_of_body);
+    body_meshes_of_ = inputs_.bodies;
+  }
+  for (std::size_t at = 0; at < markers.size(); ++at)
+  {
+    const visualization_msgs::Marker& marker = markers[at];
     // others remove the bodies of an earlier scene
     if (marker.action != visualization_msgs::Marker::ADD)
       continue;
     const RigidTransform pose = transform(face_frame, marker.header.frame_id, stamp);
-    RenderMesh& mesh = scene.meshes.emplace_back();
-    for (const auto& point : marker.points)
+    RenderMesh& mesh = scene.meshes.emplace_back(body_meshes_[at]);
+    for (auto& vertex : mesh.vertices)
     {
-      const std::array<double, 3> p = pose(std::array<double, 3>{ point.x, point.y, point.z });
-      mesh.vertices.push_back({ static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]) });
+      const std::array<double, 3> p = pose(vertex);
+      vertex = { static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]) };
     }
     // an eyeball that lids touch is drawn as a ball
     const auto is_eyeball = [&mesh](const RenderBall& ball)
@@ -275,14 +288,7 @@ void VirtualCamera::add_bodies(const std::string& face_frame, const ros::Time& s
       return ball.label == eye_label && std::all_of(mesh.vertices.begin(), mesh.vertices.end(), is_within);
     };
     if (std::any_of(scene.balls.begin(), scene.balls.end(), is_eyeball))
-    {
       scene.meshes.pop_back();
-      continue;
-    }
-    for (std::int32_t v = 0; v + 2 < static_cast<std::int32_t>(mesh.vertices.size()); v += 3)
-      mesh.triangles.push_back({ v, v + 1, v + 2 });
-    mesh.colours.assign(mesh.vertices.size(), body_colour);
-    mesh.labels.assign(mesh.vertices.size(), body_label);
   }
 }
 
@@ -303,14 +309,13 @@ void VirtualCamera::take_picture()
       scene.balls.push_back(*appearance_.mouth);
     for (const auto& marker : inputs_.eyes->markers)
     {
-      const auto& p = marker.pose.position;
-      const RenderBall ball{
-        { p.x, p.y, p.z }, 0.5 * marker.scale.x, { marker.color.r, marker.color.g, marker.color.b }, eye_label
-      };
-      scene.balls.push_back(ball);
-      // the first of each eye is the eyeball itself
-      if (marker.id == 0)
-        scene.balls.push_back(socket_of(ball));
+      if (marker.type == visualization_msgs::Marker::TRIANGLE_LIST)
+      {
+        scene.meshes.push_back(mesh_of_iris(marker));
+        continue;
+      }
+      scene.balls.push_back(ball_of(marker));
+      scene.balls.push_back(socket_of(scene.balls.back()));
     }
     add_bodies(face_frame, header.stamp, scene);
     camera_.to_camera = transform(frame_, face_frame, header.stamp);

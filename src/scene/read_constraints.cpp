@@ -86,6 +86,13 @@ constexpr ConstraintKind constraint_kinds[] = {
       constraint.crop = read_region(mapping.optional("crop"));
       read_friction(mapping, constraint);
     } },
+  // a body of contact within whose reach there is no tissue
+  { SceneConstraint::Kind::contact, "shown",
+    [](Mapping& mapping, SceneConstraint& constraint, const SceneNames&)
+    {
+      constraint.within = 0;
+      constraint.bone = mapping.optional("bone").name();
+    } },
 };
 
 }  // namespace

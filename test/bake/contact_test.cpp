@@ -109,6 +109,43 @@ TEST(BakedContact, WhatCannotBeIsRefused)
   std::filesystem::remove_all(folder);
 }
 
+TEST(BakedContact, WhatIsOnlyShownContinuesTheSkinAndTouchesNothing)
+{
+  Scene scene = touched_block();
+  scene.skin.surface = "block";
+  scene.skin.crop.lower = { 3.1e-3, -1, -1 };
+  scene.skin.crop.upper[2] = 5.3e-3;
+  SceneConstraint& shown = scene.constraints[0];
+  shown.surfaces = { "block" };
+  shown.within = 0;
+  const Model model = bake(scene);
+  ASSERT_EQ(model.contacts.size(), 1u);
+  const Contact& contact = model.contacts[0];
+  EXPECT_TRUE(contact.points.empty());
+  EXPECT_FALSE(effects_of(model).has(Effect::contact));
+  const auto area = [](const TriangleMesh& mesh)
+  {
+    const std::vector<double> areas = vertex_areas(mesh);
+    return std::accumulate(areas.begin(), areas.end(), 0.0);
+  };
+  const double whole = 2 * (20e-3 * 12e-3 + 12e-3 * 8e-3 + 8e-3 * 20e-3);
+  EXPECT_NEAR(area(model.skin) + area(contact.shape), whole, 1e-9 * whole);
+  // each point of the skin's edge is one of the rest
+  int seam = 0;
+  for (const auto& vertex : model.skin.vertices)
+  {
+    const auto p = model.to_scene(vertex);
+    if (std::abs(p[0] - 3.1e-3) > 1e-9 && std::abs(p[2] - 5.3e-3) > 1e-9)
+      continue;
+    double apart = 1;
+    for (const auto& other : contact.shape.vertices)
+      apart = std::min(apart, std::hypot(other[0] - vertex[0], other[1] - vertex[1], other[2] - vertex[2]));
+    EXPECT_LT(apart, 1e-12);
+    ++seam;
+  }
+  EXPECT_GE(seam, 8);
+}
+
 TEST(BakedContact, AFileGivesItBackAndHoldsNothingWithoutIt)
 {
   const std::string folder = std::filesystem::temp_directory_path() / ("contact_file_" + std::to_string(::getpid()));

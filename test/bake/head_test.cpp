@@ -212,6 +212,35 @@ TEST(Head, IsClosedAndMirrorsItself)
   EXPECT_LE(different, there.size() / 500) << "rounding alone may part a few";
 }
 
+TEST(Head, HasHairBetweenHairlineAndNapeThatLeavesFaceAndEarsFree)
+{
+  for (const double size : { 0.0, 2.0 })
+  {
+    std::map<std::string, double> dimensions;
+    for (const auto& d : shipped()->dimensions)
+      if (d.derived_from.empty() && size > 0)
+        dimensions[d.name] = d.mean + size * d.deviation;
+    const Head head(shipped(), dimensions);
+    const TriangleMesh hair = head.part("hair", 3e-3);
+    EXPECT_LT(asymmetry(hair, hair), 0.3e-3) << "squares have two diagonals";
+    const TriangleTree tree(hair);
+    const auto away = [&](const std::string& landmark) { return tree.closest(head.landmark(landmark)).distance; };
+    EXPECT_LT(away("tr"), 4e-3);
+    EXPECT_LT(away("eu"), 10e-3);
+    EXPECT_LT(away("op"), 20e-3);
+    for (const char* bare : { "metopion", "ft", "zy", "t", "sba" })
+      EXPECT_GT(away(bare), 5e-3) << bare;
+    // between it and the skin is as much hair as grows at most, and it goes under the skin at its border alone
+    const TriangleMesh skin = head.part("visible", 3e-3);
+    const TriangleTree below(skin);
+    double thickest = 0;
+    for (const Vector3& p : hair.vertices)
+      thickest = std::max(thickest, below.closest(to_vector(p)).distance);
+    EXPECT_GT(thickest, 8e-3);
+    EXPECT_LT(thickest, 16e-3);
+  }
+}
+
 TEST(Head, HasBonesAtTheDepthsOfItsTable)
 {
   const TriangleMesh bones = [&]

@@ -266,5 +266,38 @@ TEST(FaceAppearance, LabelsFollowTheLandmarks)
   EXPECT_LT(appearance.colours[0][1], appearance.colours[5][1]);
 }
 
+TEST(FaceAppearance, LashesAreAlongTheEdgesOfTheLids)
+{
+  const RenderBall eye{ { 0, 0.03, 0 }, 0.012, {} };
+  // the edge of the upper lid, that of the lower one, the middle of the upper lid, and a cheek
+  const std::vector<std::array<float, 3>> vertices{
+    { 0.0125F, 0.03F, 0.004F }, { 0.0115F, 0.03F, -0.005F }, { 0.011F, 0.03F, 0.009F }, { 0.012F, 0.03F, -0.02F }
+  };
+  const auto colours = skin_appearance({}, {}, vertices, { eye }).colours,
+             bare = skin_appearance({}, {}, vertices).colours;
+  EXPECT_LT(colours[0][0], 0.5F * bare[0][0]);
+  EXPECT_LT(colours[1][0], 0.9F * bare[1][0]);
+  EXPECT_EQ(colours[2], bare[2]);
+  EXPECT_EQ(colours[3], bare[3]);
+}
+
+TEST(FaceAppearance, BodiesHaveTheColourOfTeethSkinOrHair)
+{
+  const TriangleMesh none;
+  const auto teeth = body_appearance("hair", false, none), skin = body_appearance("head", true, none),
+             hair = body_appearance("hair", true, none);
+  EXPECT_EQ(teeth.label, body_label);
+  EXPECT_EQ(skin.label, skin_label);
+  EXPECT_EQ(label_names().at(hair.label), "hair");
+  EXPECT_EQ(skin.colour, skin_appearance({}, {}, { { 0, 0, 0 } }).colours[0]);
+  // hair is thin at the border of its surface, and dense where that is far away
+  TriangleMesh fan;
+  fan.vertices = { { 0, 0, 0 }, { 0.02, 0, 0 }, { 0, 0.02, 0 }, { -0.02, -0.02, 0 } };
+  fan.triangles = { { 0, 1, 2 }, { 0, 2, 3 }, { 0, 3, 1 } };
+  const auto colours = body_appearance("hair", true, fan).colours;
+  EXPECT_NEAR(colours[0][0], hair.colour[0], 1e-6);
+  EXPECT_EQ(colours[1], skin.colour);
+}
+
 }  // namespace
 }  // namespace frontalis

@@ -163,19 +163,21 @@ TEST(Conversions, BonesBecomeFramesAndEyesAreShownInTheirs)
   EXPECT_NEAR(transforms[2].transform.translation.y, 0.03, 1e-9);
   EXPECT_NEAR(transforms[2].transform.rotation.z, std::sqrt(0.5), 1e-9);
 
-  // the iris reaches farther than the eyeball in the direction of gaze, and the pupil farther than the iris
+  // the iris is a cap on the eyeball, in the direction of gaze
   const auto markers = to_eyeballs(model, frame.bones).markers;
-  ASSERT_EQ(markers.size(), 3u);
-  double reach = 0.03 + 0.0119;
-  for (const auto& marker : markers)
+  ASSERT_EQ(markers.size(), 2u);
+  EXPECT_EQ(markers[0].ns, "eye_left");
+  EXPECT_NEAR(markers[0].pose.position.x, 0.01, 1e-9);
+  EXPECT_NEAR(markers[0].scale.y, 0.024, 1e-9);
+  ASSERT_FALSE(markers[1].points.empty());
+  EXPECT_EQ(markers[1].colors.size(), markers[1].points.size());
+  for (const auto& point : markers[1].points)
   {
-    EXPECT_EQ(marker.ns, "eye_left");
-    EXPECT_NEAR(marker.pose.position.x, 0.01, 1e-9);
-    const double front = marker.pose.position.y + 0.5 * marker.scale.y;
-    EXPECT_GT(front, reach);
-    reach = front;
+    EXPECT_GT(std::hypot(point.x - 0.01, point.y - 0.03, point.z + 0.01), 0.012);
+    EXPECT_LT(std::hypot(point.x - 0.01, point.z + 0.01), 0.0065);
+    EXPECT_LT(point.y, 0.03 + 0.014);
+    EXPECT_GT(point.y, 0.03);
   }
-  EXPECT_LT(reach, 0.03 + 0.014);
 }
 
 TEST(Conversions, LandmarksOnSkinThatFacesUpHaveAxesToo)

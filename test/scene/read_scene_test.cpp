@@ -283,7 +283,7 @@ TEST(EveryKey, muscles_and_expressions)
 TEST(EveryKey, constraints_and_loads)
 {
   const Scene& scene = every_key();
-  ASSERT_EQ(scene.constraints.size(), 4U);
+  ASSERT_EQ(scene.constraints.size(), 5U);
   EXPECT_EQ(scene.constraints[0].kind, SceneConstraint::Kind::rigid);
   EXPECT_EQ(scene.constraints[0].surfaces, std::vector<std::string>{ "torus" });
   EXPECT_NEAR(scene.constraints[0].within, 1.5e-3, 1e-15);
@@ -307,6 +307,10 @@ TEST(EveryKey, constraints_and_loads)
   EXPECT_EQ(scene.constraints[3].kind, SceneConstraint::Kind::self_contact);
   EXPECT_EQ(scene.constraints[3].surfaces, (std::vector<std::string>{ "box", "sphere" }));
   EXPECT_EQ(scene.constraints[3].friction, 0.4);
+  // what is only shown is a body of contact within whose reach there is no tissue
+  EXPECT_EQ(scene.constraints[4].kind, SceneConstraint::Kind::contact);
+  EXPECT_EQ(scene.constraints[4].within, 0);
+  EXPECT_EQ(scene.constraints[4].bone, "finger");
 
   ASSERT_EQ(scene.loads.size(), 3U);
   EXPECT_EQ(scene.loads[0].kind, SceneLoad::Kind::traction);

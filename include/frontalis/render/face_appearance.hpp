@@ -11,8 +11,15 @@
 namespace frontalis
 {
 
-/// Colour of bodies that tissue touches.
-constexpr std::array<float, 3> body_colour{ { 0.93F, 0.91F, 0.84F } };
+/// Colours of a body's vertices, and its label: of one that tissue touches those of teeth, of one that is only shown
+/// those of skin, or of hair if it is named so. Hair gets thinner towards the open border of its surface.
+struct BodyAppearance
+{
+  std::uint8_t label = 0;
+  std::array<float, 3> colour{};              ///< of most of the body
+  std::vector<std::array<float, 3>> colours;  ///< per vertex
+};
+BodyAppearance body_appearance(const std::string& name, bool only_shown, const TriangleMesh& surface);
 
 /// Names of all labels, from label 0 on.
 std::vector<std::string> label_names();
@@ -20,31 +27,37 @@ std::vector<std::string> label_names();
 /// Colours and labels of the skin of a face. They follow from the places of its landmarks at rest (face frame, [m]).
 struct SkinAppearance
 {
-  std::vector<std::array<float, 3>> colours;  ///< of the vertices: skin, lips and painted brows
+  std::vector<std::array<float, 3>> colours;  ///< of the vertices: skin, lips, painted brows and edges of the lids
   std::vector<std::uint8_t> labels;           ///< of the vertices: lips, brows, and the parts around named landmarks
   std::optional<RenderBall> mouth;            ///< a dark ball behind the lips
 };
+/// `eyes`: the eyeballs. The edges of the lids, which lie on them, are dark like lashes.
 SkinAppearance skin_appearance(const std::vector<std::string>& landmarks,
                                const std::vector<std::array<float, 3>>& places,
-                               const std::vector<std::array<float, 3>>& vertices);
+                               const std::vector<std::array<float, 3>>& vertices,
+                               const std::vector<RenderBall>& eyes = {});
 
 /// The fraction of each skin vertex that the hair of a painted eyebrow covers, 0..1; `vertices` and `places` of the
-/// landmarks at rest. The brow of a side is a band, 8 mm wide at its inner end, along the line through the landmarks
-/// whose names begin with "brow" and end with "_left" or "_right". It is about 1 cm longer at both ends, but ends 12 mm
-/// from the midline. A side with fewer than two such landmarks has no brow. Brows show in pictures how the skin moves;
-/// they do not act on the tissue.
+/// landmarks at rest. The brow of a side is a band with soft borders along the line through the landmarks whose names
+/// begin with "brow" and end with "_left" or "_right". It is about 1 cm longer at both ends, which are lower and where
+/// hair gets thinner, but ends 12 mm from the midline. A side with fewer than two such landmarks has no brow. Brows
+/// show in pictures how the skin moves; they do not act on the tissue.
 std::vector<float> brow_cover(const std::vector<std::string>& landmarks,
                               const std::vector<std::array<float, 3>>& places,
                               const std::vector<std::array<float, 3>>& vertices);
 
-/// The eyeballs, which are balls that tissue slides on, of bones whose names begin with "eye": three balls for each,
-/// the eyeball, its iris and its pupil, in the face frame. `motion`: that of a bone, in the face frame.
+/// The eyeballs, which are balls that tissue slides on, of bones whose names begin with "eye", in the face frame: a
+/// white ball, and the iris with its pupil, a cap on the ball. `motion`: that of a bone, in the face frame.
 struct Eyeball
 {
   std::size_t bone = 0;
-  std::array<RenderBall, 3> balls;
+  RenderBall ball;
+  RenderMesh iris;
 };
 std::vector<Eyeball> eyeballs(const Model& model, const std::function<RigidTransform(std::size_t bone)>& motion);
+
+/// The white balls of eyeballs() at rest.
+std::vector<RenderBall> resting_eyes(const Model& model);
 
 /// A dark ball behind an eyeball, which is seen where the lids leave a gap beside it.
 RenderBall socket_of(const RenderBall& eyeball);
@@ -60,6 +73,7 @@ public:
 private:
   const Model& model_;
   SkinAppearance appearance_;
+  std::vector<BodyAppearance> bodies_;  ///< of Model::contacts
 };
 
 }  // namespace frontalis

@@ -57,6 +57,9 @@ struct RenderMesh
   std::vector<std::uint8_t> labels;           ///< per vertex; a pixel has that of the closest corner of its triangle
 };
 
+/// Outward normals of the vertices: area-weighted means over triangles.
+std::vector<std::array<float, 3>> normals_of(const RenderMesh& mesh);
+
 struct RenderBall
 {
   std::array<double, 3> centre;  ///< [m]

@@ -66,9 +66,11 @@ geometry_msgs::Transform to_transform(const Model& model, const BodyShape& shape
 /// Force and torque of the tissue on a body, in the body's frame and about its origin.
 geometry_msgs::Wrench to_wrench(const Model& model, const BodyShape& shape, const BodyFrame& body);
 /// The surfaces of all bodies, each in the body's own frame, without a time stamp: displays use the latest transform.
+/// Those that are only shown, such as the rest of a head, have lit colours at their vertices, as the skin has.
 visualization_msgs::MarkerArray to_bodies(const Model& model, const std::string& face_frame);
-/// The eyeballs: spheres that tissue slides on and whose bones have names that begin with "eye". Each eyeball has three
-/// markers: eyeball, iris and pupil. `bones`: the bones of a frame of the motion. Fills all but the headers.
+/// The eyeballs: spheres that tissue slides on and whose bones have names that begin with "eye". Each eyeball has two
+/// markers: a sphere, and the iris with its pupil as triangles. `bones`: the bones of a frame of the motion. Fills all
+/// but the headers.
 visualization_msgs::MarkerArray to_eyeballs(const Model& model, const std::vector<BodyFrame>& bones);
 
 /// The rigid motion that a transform describes. Throws an Error if the length of its quaternion differs from 1 by more

@@ -72,6 +72,8 @@ private:
   shape_msgs::Mesh::ConstPtr appearance_of_;  ///< the topology that appearance_ and triangles_ are of
   SkinAppearance appearance_;
   std::vector<std::array<std::int32_t, 3>> triangles_;
+  visualization_msgs::MarkerArray::ConstPtr body_meshes_of_;  ///< the message that body_meshes_ are of
+  std::vector<RenderMesh> body_meshes_;                       ///< per marker
 
   /// Stamp of the first transform from a frame to another one that was waited for in vain; 0 after a success.
   std::map<std::pair<std::string, std::string>, ros::Time> missed_;

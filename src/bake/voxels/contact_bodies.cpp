@@ -7,6 +7,7 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <memory>
@@ -133,6 +134,27 @@ Vector3 centre_of(const TriangleMesh& mesh)
   return to_array(box.center());
 }
 
+// The part of a mesh outside of a region. It has the same points on the region's sides as cut_mesh(mesh, region).
+TriangleMesh part_beyond(const TriangleMesh& mesh, const Region& region)
+{
+  TriangleMesh beyond;
+  Region rest;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+  {
+    Region below = rest, above = rest;
+    below.upper[axis] = region.lower[axis];
+    above.lower[axis] = region.upper[axis];
+    if (std::isfinite(region.lower[axis]))
+      append(beyond, cut_mesh(mesh, below));
+    if (std::isfinite(region.upper[axis]))
+      append(beyond, cut_mesh(mesh, above));
+    rest.lower[axis] = region.lower[axis];
+    rest.upper[axis] = region.upper[axis];
+  }
+  join_vertices(beyond);
+  return beyond;
+}
+
 // Index of a bone in the model, which is added if it is new; -1 without a name.
 std::int32_t bone_of(const std::string& name, Model& model)
 {
@@ -219,6 +241,20 @@ void bind_contacts(const Scene& scene, const PreparedSurfaces& surfaces, const L
     contact.bone = bone_of(constraint.bone, model);
     contact.friction = constraint.friction;
     contact.reach = reach_share * *std::max_element(model.spacing.begin(), model.spacing.end());
+
+    // nothing touches what is only shown
+    if (constraint.within == 0)
+    {
+      for (const std::string& name : constraint.surfaces)
+      {
+        const TriangleMesh& mesh = named_surface(surfaces, name, place).mesh();
+        add_shape(name == scene.skin.surface ? part_beyond(mesh, scene.skin.crop) : mesh, frame, contact);
+      }
+      contact.centre = centre_of(contact.shape);
+      contact.field = sphere_field(contact.centre, contact.reach);
+      model.contacts.push_back(std::move(contact));
+      continue;
+    }
 
     std::vector<Body> bodies;
     for (const std::string& name : constraint.surfaces)

@@ -31,6 +31,15 @@ Portrait::Portrait(const Model& model, const SkinState& rest) : appearance_(mode
       low[axis] = std::min(low[axis], double(v[axis + 1]));
       high[axis] = std::max(high[axis], double(v[axis + 1]));
     }
+  // the rest of the head, without the neck
+  for (const Contact& contact : model.contacts)
+    for (const auto& v : contact.points.empty() ? contact.shape.vertices : std::vector<std::array<double, 3>>())
+    {
+      const std::array<double, 3> p = model.to_face(v);
+      low[0] = std::min(low[0], p[1]);
+      high[0] = std::max(high[0], p[1]);
+      high[1] = std::max(high[1], p[2]);
+    }
   const std::array<double, 3> middle{ 0, 0, 0.5 * (low[1] + high[1]) - 4e-3 };
   const double pixel = margin * std::max((high[0] - low[0]) / width, (high[1] - low[1]) / height);
   camera_ = camera_with(width, height, 2 * std::atan(0.5 * width * pixel / distance));

@@ -12,7 +12,20 @@ namespace
 {
 
 constexpr double default_edge = 1.75e-3, skull_edge = 2e-3;  // [m]
-constexpr int default_levels = 2;                            // subdivisions of the skin from which depths are measured
+// Hair is laid on the skin in layers, each within a body of the template: its height, and the width over which it
+// rises.
+struct HairLayer
+{
+  const char* body;
+  double height, rise;  // [m]
+};
+constexpr HairLayer hair_layers[] = { { "hair", 3.5e-3, 14e-3 }, { "hair_top", 9e-3, 34e-3 } };
+constexpr double hair_margin = 3e-3;    // [m] by which the surface of hair goes on, under the skin, beyond the hairline
+constexpr double hair_sink = 0.3;       // depth of that margin over the distance from the hairline
+constexpr double hairline_wave = 1e-3;  // [m] by which locks shift the hairline
+constexpr double lock_height = 0.12;    // height of a lock over the thickness of the hair
+
+constexpr int default_levels = 2;  // subdivisions of the skin from which depths are measured
 
 /// Steps of subdivision after which edges are at most `edge` long on average.
 int levels_for(const PolygonMesh& cage, double edge)
@@ -36,6 +49,50 @@ std::vector<Vector3d> vertex_normals(const TriangleMesh& mesh)
   for (Vector3d& n : normals)
     n.normalize();
   return normals;
+}
+
+/// Locks of hair that run from the crown of the head: a sum of waves across them, -1 to 1, equal on both sides.
+double lock_at(const Vector3d& p)
+{
+  const Vector3d middle(-95e-3, 0, 10e-3), crown = Vector3d(-0.5, 0, 0.87).normalized();
+  const Vector3d from = (p - middle).normalized();
+  const double polar = std::acos(std::clamp(from.dot(crown), -1.0, 1.0));
+  const Vector3d across(crown[2], 0, -crown[0]);
+  const double around = std::atan2(std::abs(from[1]), from.dot(across));
+  return 0.5 * std::sin(23 * around + 3 * std::sin(5 * polar)) + 0.3 * std::sin(41 * around - 4 * std::sin(3 * polar)) +
+         0.2 * std::sin(67 * around + 7 * polar);
+}
+
+/// The part of a skin that hair covers, raised by the thickness of the hair. `inside`: signed distance from a body.
+TriangleMesh hair_on(const TriangleMesh& skin,
+                     const std::function<double(const std::string& body, const Vector3d&)>& inside)
+{
+  TriangleMesh mesh = skin;
+  const std::vector<Vector3d> normals = vertex_normals(skin);
+  std::vector<bool> covered(skin.vertices.size());
+  for (std::size_t v = 0; v < covered.size(); ++v)
+  {
+    const Vector3d p = to_vector(skin.vertices[v]);
+    const double lock = lock_at(p);
+    double height = 0;
+    for (const HairLayer& layer : hair_layers)
+    {
+      const double deep = hairline_wave * lock - inside(layer.body, p);
+      const double share = std::clamp(deep / layer.rise, 0.0, 1.0);
+      height += layer.height * share * share * (3 - 2 * share) * (1 + lock_height * lock);
+      if (&layer == hair_layers)
+      {
+        covered[v] = deep > -hair_margin;
+        height += hair_sink * std::clamp(deep, -hair_margin, 1e-3);
+      }
+    }
+    mesh.vertices[v] = to_array(p + height * normals[v]);
+  }
+  std::vector<bool> keep;
+  keep.reserve(mesh.triangles.size());
+  for (const Triangle& t : mesh.triangles)
+    keep.push_back(covered[t[0]] && covered[t[1]] && covered[t[2]]);
+  return keep_triangles(mesh, keep);
 }
 
 }  // namespace
@@ -71,6 +128,8 @@ TriangleMesh Head::skin(const std::string& name, double edge) const
   TriangleMesh mesh = subdivide(cage_, levels_for(cage_, edge), groups);
   if (!groups.empty())
     mesh = keep_triangles(mesh, std::vector<bool>(mesh.triangles.size(), true));
+  if (name == "hair")
+    mesh = hair_on(mesh, [&](const std::string& body, const Vector3d& p) { return bones_->part(body, p); });
   for (Vector3& p : mesh.vertices)
     p = to_array((*warp_)(to_vector(p)));
   return mesh;
@@ -107,7 +166,7 @@ TriangleMesh Head::bone(const std::string& name, double edge) const
 TriangleMesh Head::part(const std::string& name, double wanted_edge) const
 {
   const double edge = wanted_edge > 0 ? wanted_edge : name == "skull" ? skull_edge : default_edge;
-  if (name == "skin" || name == "face" || name == "visible")
+  if (name == "skin" || name == "face" || name == "visible" || (name == "hair" && bones_->has("hair_top")))
     return skin(name, edge);
   if (name == "eye_left" || name == "eye_right")
     return eye(name == "eye_left", edge);
