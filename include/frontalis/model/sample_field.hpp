@@ -21,9 +21,9 @@ using Distance = std::function<SurfaceDistance(const std::array<double, 3>&)>;
 using Loop = std::function<void(std::size_t count, const std::function<void(std::size_t)>& body)>;
 void one_by_one(std::size_t count, const std::function<void(std::size_t)>& body);
 
-/// Distances are asked for in clusters of points, the middle one first. This is the largest distance between two points
-/// of a cluster, in spacings.
-constexpr double cluster_extent = 7;
+/// Most distances are asked for in clusters of points, the middle one first. This is the edge of a cube around a
+/// cluster, in spacings.
+constexpr double cluster_extent = 9.01;
 
 /// Samples a distance every `spacing` [m], in all bricks (physics/distance_field.hpp) that sliding nodes can reach:
 /// those within `travel` [m] of a node's rest position where the distance is between the smallest and the largest
