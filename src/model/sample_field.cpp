@@ -101,23 +101,15 @@ std::ptrdiff_t neighbour(const SampledField& field, std::size_t place, const std
 constexpr int width = DistanceField::brick_row;
 
 // Calls visit(sample, way) for all samples of a brick. `way` points, in bricks, to the brick that owns the cell around
-// the sample. The middle sample of each cubic block comes first, because its result speeds up the searches for the
-// samples around it.
+// the sample.
 template <class Visit>
 void visit_samples(const Visit& visit)
 {
-  constexpr int block = 5, samples = block * block * block;
-  static_assert(width % block == 0 && block % 2 == 1, "blocks fill a brick and have a sample in the middle");
   const auto side = [](int at) { return at == 0 ? -1 : at == width - 1 ? 1 : 0; };
-  for (int z = 0; z < width; z += block)
-    for (int y = 0; y < width; y += block)
-      for (int x = 0; x < width; x += block)
-        for (int n = 0; n < samples; ++n)
-        {
-          const int s = n == 0 ? samples / 2 : n <= samples / 2 ? n - 1 : n;
-          const int i = x + s % block, j = y + s / block % block, k = z + s / (block * block);
-          visit((k * width + j) * width + i, std::array<int, 3>{ { side(i), side(j), side(k) } });
-        }
+  for (int k = 0; k < width; ++k)
+    for (int j = 0; j < width; ++j)
+      for (int i = 0; i < width; ++i)
+        visit((k * width + j) * width + i, std::array<int, 3>{ { side(i), side(j), side(k) } });
 }
 
 // Samples the bricks in which the distance reaches the brick's band. A sample that several bricks share is computed
@@ -138,12 +130,12 @@ void fill(SampledField& field, const std::vector<Band>& bands, const Distance& d
     return Point{ { along(0, place % field.bricks[0], i), along(1, row % field.bricks[1], j),
                     along(2, row / field.bricks[1], k) } };
   };
+  constexpr double middle = 0.5 * (width - 1);
   std::vector<char> wanted(places.size());
   loop(places.size(),
        [&](std::size_t n)
        {
          const Band& band = bands[places[n]];
-         constexpr double middle = 0.5 * (width - 1);
          wanted[n] =
              band.home || reaches(distance, band, point_of(places[n], middle, middle, middle), edge, spacing) ? 1 : 0;
        });
@@ -164,6 +156,7 @@ void fill(SampledField& field, const std::vector<Band>& bands, const Distance& d
        [&](std::size_t n)
        {
          float* const samples = field.samples.data() + n * DistanceField::brick_size;
+         distance(point_of(stored[n], middle, middle, middle));  // a cluster of points begins with its middle
          visit_samples(
              [&](int s, const std::array<int, 3>& way)
              {

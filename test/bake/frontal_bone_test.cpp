@@ -1,9 +1,11 @@
 // Nodes that slide over a bone stay on level sets of a distance field, the distance from the side that faces tissue.
 
 #include "bake/fibres/fibres.hpp"
+#include "bake/mesh/surface.hpp"
 #include "bake/voxels/model_stages.hpp"
 #include "bake/voxels/tissue_sheet.hpp"
 #include "frontalis/model/sample_field.hpp"
+#include "frontalis/scene/read_scene.hpp"
 #include "solver/contact/kept_level.hpp"
 
 #include <gtest/gtest.h>
@@ -118,14 +120,14 @@ TriangleMesh made_bone()
 
 Point point(const std::array<double, 3>& p) { return { p[0], p[1], p[2] }; }
 
-// A bone under tissue; `forward` points from the bone to the tissue.
+// A bone under tissue, which lies at z of at least `lowest` [m]; `forward` points from the bone to the tissue.
 struct CoveredBone
 {
   PreparedSurfaces surfaces;
   LocalFrame frame;
   Model model;
 
-  CoveredBone(const TriangleMesh& mesh, const Vector3d& forward, double edge)
+  CoveredBone(const TriangleMesh& mesh, const Vector3d& forward, double edge, double lowest = -1)
   {
     surfaces.push_back(std::make_unique<PreparedSurface>("bone", mesh));
     const PreparedSurface& bone = *surfaces[0];
@@ -135,6 +137,8 @@ struct CoveredBone
       model.size[axis] = static_cast<std::int32_t>((bone.box().sizes()[axis] + 20e-3) / edge);
     const auto is_tissue = [&](const Vector3d& p)
     {
+      if (p[2] < lowest)
+        return false;
       const ClosestPoint closest = bone.tree().closest(p);
       const double distance = bone.signed_distance(p, closest);
       // tissue begins half an edge below the surface, because voxels reach into the bone
@@ -320,6 +324,20 @@ TEST(FrontalBone, NodesKeepToTheOuterTableOfAMadeBone)
     inside += node.distance < 0 ? 1 : 0;
   }
   EXPECT_GT(inside, 300);
+  check_slopes(bone);
+  check_distances(bone);
+  check_paths(bone);
+}
+
+TEST(FrontalBone, NodesKeepToTheForeheadOfTheGeneratedHead)
+{
+  const Scene scene = read_scene(FRONTALIS_SOURCE_DIRECTORY "/config/head.yaml");
+  const auto skull = std::find_if(scene.surfaces.begin(), scene.surfaces.end(),
+                                  [](const Surface& surface) { return surface.name == "skull"; });
+  ASSERT_NE(skull, scene.surfaces.end());
+  // below the brows the tissue of this test would fill the orbits
+  const CoveredBone bone(load_surface(*skull, scene.unit).mesh, { 1, 0, 0 }, 3e-3, 10e-3);
+  EXPECT_GT(bone.model.sliding.size(), 500U);
   check_slopes(bone);
   check_distances(bone);
   check_paths(bone);

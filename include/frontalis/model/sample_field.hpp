@@ -22,9 +22,9 @@ using Distance = std::function<SurfaceDistance(const std::array<double, 3>&)>;
 using Loop = std::function<void(std::size_t count, const std::function<void(std::size_t)>& body)>;
 void one_by_one(std::size_t count, const std::function<void(std::size_t)>& body);
 
-/// Distances are requested for clusters of points, beginning with the middle point of a cluster. This is the largest
-/// distance between two points of a cluster, in spacings.
-constexpr double cluster_extent = 7;
+/// Most distances are requested for clusters of points, beginning with the middle point of a cluster. This is the edge
+/// of a cube around a cluster, in spacings.
+constexpr double cluster_extent = 9.01;
 
 /// Samples a distance every `spacing` [m] in all bricks (physics/distance_field.hpp) that sliding nodes can reach. A
 /// brick is reached if it is within `travel` [m] of the rest position of a node and if its distance from the surface is

@@ -9,27 +9,44 @@ namespace
 
 // relative, for rounding in double and in single precision
 constexpr double margin = 1e-9;
-constexpr float float_margin = 1e-5f;
+constexpr double float_margin = 1e-5;
+// Lists pay only for many points: the triangles around a cube are gathered after `alone` points in it, and those of its
+// eighths, where they are more than four times `few_groups`, after `few_points`.
+constexpr int alone = 4, few_points = 16;
+constexpr std::size_t few_groups = 8;
+
+/// Radius of the ball around a cube.
+double radius_of(double half) { return std::sqrt(3.0) * half * (1 + margin); }
 
 }  // namespace
 
 ClosestPoint ClusterSearch::closest(const Vector3d& p, double bound)
 {
-  const Vector3d from_centre = p - centre_;
-  const double way = from_centre.norm();
+  if (cubes_.empty() || (p - cubes_[0].centre).cwiseAbs().maxCoeff() > cubes_[0].half)
+    return begin(p, bound);
+  if (++asked_ < alone)
+    return tree_->closest(p, bound, first_.triangle);
+  if (asked_ == alone)
+    gather();
+  if (bound + (p - cubes_[0].centre).norm() > reach_)
+    return begin(p, bound);
+  std::size_t cube = 0;
+  if (asked_ > few_points && cubes_[0].end > few_groups)
+  {
+    std::size_t eighth = 0;
+    for (Eigen::Index a = 0; a < 3; ++a)
+      eighth |= (p[a] > cubes_[0].centre[a] ? std::size_t{ 1 } : 0) << a;
+    if (eighths_[eighth] == 0)
+      divide(eighth);
+    cube = eighths_[eighth];
+  }
+
   ClosestPoint best;
   best.distance = bound;
   double squared = bound >= 1e150 ? 1e300 : bound * bound;
-  const auto ask = [&](std::int32_t index, double radius)
+  const auto ask = [&](std::int32_t index)
   {
     const auto& [a, b, c] = tree_->corners_[index];
-    // a triangle is not nearer than its plane, nor than the disc in this plane in which it lies
-    const Vector3d normal = (b - a).cross(c - a), away = p - (1.0 / 3) * (a + b + c);
-    const double projected = away.dot(normal);
-    const double height = (1 - margin) * projected * projected / normal.squaredNorm();
-    const double beside = radius + std::sqrt(squared - height);
-    if (height > squared || away.squaredNorm() - height > beside * beside)
-      return;
     const std::int32_t triangle = tree_->order_[index];
     std::int8_t feature = 0;
     const Vector3d q = closest_on_triangle(p, a, b, c, feature);
@@ -44,70 +61,115 @@ ClosestPoint ClusterSearch::closest(const Vector3d& p, double bound)
   };
   // the triangle of the latest point is probably near, so that most others need no closer look
   if (latest_ >= 0)
-    ask(latest_, std::numeric_limits<double>::infinity());
-  const auto x = static_cast<float>(from_centre[0]), y = static_cast<float>(from_centre[1]),
-             z = static_cast<float>(from_centre[2]);
-  for (const Group& group : groups_)
+    ask(latest_);
+  const Eigen::Array3f at = (p - cubes_[cube].centre).cast<float>();
+  for (std::size_t g = cubes_[cube].begin; g < cubes_[cube].end; ++g)
   {
-    if (group.least - way > best.distance)
-      break;
-    const auto near = static_cast<float>(std::min(best.distance, 1e6)) * (1 + float_margin);
-    std::array<bool, Group::size> meets{};
-    for (std::size_t n = 0; n < Group::size; ++n)
-    {
-      const float dx = x - group.x[n], dy = y - group.y[n], dz = z - group.z[n], sum = near + group.radius[n];
-      meets[n] = dx * dx + dy * dy + dz * dz <= sum * sum;
-    }
-    for (std::size_t n = 0; n < Group::size; ++n)
-      if (meets[n])
-        ask(group.index[n], double{ group.radius[n] });
+    const Group& group = groups_[g];
+    const auto limit = static_cast<float>(std::min(best.distance, 1e6));
+    const Eigen::Array4f farther =
+        group.distance + group.away[0] * at[0] + group.away[1] * at[1] + group.away[2] * at[2] - limit;
+    for (std::size_t n = 0; n < 4; ++n)
+      if (farther[static_cast<Eigen::Index>(n)] <= 0)
+        ask(group.index[n]);
   }
-  // a triangle that is not kept is farther than reach_ from centre_
-  if (best.distance + way < reach_)
-    return best;
-  best = tree_->closest(p, bound);
-  gather(p, best.distance + extent_);
   return best;
 }
 
-void ClusterSearch::gather(const Vector3d& p, double reach)
+ClosestPoint ClusterSearch::begin(const Vector3d& p, double bound)
 {
-  std::vector<std::pair<double, std::int32_t>> found;  // distance, index
+  cubes_.assign(1, Cube());
+  cubes_[0].centre = p;
+  cubes_[0].half = 0.5 * extent_;
+  asked_ = 0;
+  eighths_.fill(0);
+  return first_ = tree_->closest(p, bound, first_.triangle);
+}
+
+void ClusterSearch::gather()
+{
+  const Vector3d p = cubes_[0].centre;
+  const double reach = first_.distance + 2 * radius_of(cubes_[0].half);
   tree_->visit([&](std::size_t node) { return tree_->nodes_[node].box.squaredExteriorDistance(p) <= reach * reach; },
                [&](std::size_t i)
                {
-                 const auto& [a, b, c] = tree_->corners_[i];
-                 std::int8_t feature = 0;
-                 const double distance = (closest_on_triangle(p, a, b, c, feature) - p).norm();
-                 if (distance <= reach)
-                   found.emplace_back(distance, static_cast<std::int32_t>(i));
+                 add(p, static_cast<std::int32_t>(i));
                  return false;
                });
-  std::sort(found.begin(), found.end());
-  centre_ = p;
-  reach_ = reach * (1 - margin);
-  latest_ = found.empty() ? -1 : found.front().second;
+  latest_ = -1;
   groups_.clear();
-  for (std::size_t n = 0; n < found.size(); ++n)
+  add_groups(cubes_[0]);
+  // If the first point had a bound, triangles beyond it were not gathered. Others that are missing are never closest.
+  reach_ = first_.triangle < 0 ? reach * (1 - margin) : std::numeric_limits<double>::infinity();
+}
+
+void ClusterSearch::divide(std::size_t eighth)
+{
+  Cube part;
+  part.half = 0.5 * cubes_[0].half;
+  for (Eigen::Index a = 0; a < 3; ++a)
+    part.centre[a] = cubes_[0].centre[a] + ((eighth >> a & 1U) != 0 ? part.half : -part.half);
+  for (std::size_t g = 0; g < cubes_[0].end; ++g)
+    for (const std::int32_t index : groups_[g].index)
+      if (index >= 0)
+        add(part.centre, index);
+  add_groups(part);
+  eighths_[eighth] = cubes_.size();
+  cubes_.push_back(part);
+}
+
+void ClusterSearch::add(const Vector3d& centre, std::int32_t index)
+{
+  const auto& [a, b, c] = tree_->corners_[index];
+  std::int8_t feature = 0;
+  const Vector3d away = centre - closest_on_triangle(centre, a, b, c, feature);
+  near_.push_back({ index, away.norm(), away });
+}
+
+/// Groups the added triangles that can be the closest to a point of the cube.
+void ClusterSearch::add_groups(Cube& cube)
+{
+  const double radius = radius_of(cube.half);
+  Near nearest{ -1, std::numeric_limits<double>::infinity(), Vector3d::Zero() };
+  for (Near& near : near_)
   {
-    const std::size_t at = n % Group::size;
-    if (at == 0)
+    // rounding spoils the direction of very short ways
+    near.away *= near.distance > 1e-3 * radius ? 1 / near.distance : 0;
+    if (near.distance < nearest.distance)
+      nearest = near;
+  }
+  // A point of the cube is x from its centre, |x| <= radius. From the nearest triangle T, in the direction t at the
+  // distance d from the centre, it is at most |d t + x| away, which exceeds d + t . x by at most `bend`. From any other
+  // triangle, in the direction a at the distance e, it is at least e + a . x away. So T is the nearer one for all x if
+  // e > d + bend + |t - a| radius.
+  const double d = nearest.distance, bend = d > 0.5 * radius ? 0.5 * radius * radius / d : 2 * (radius - d);
+  cube.begin = groups_.size();
+  std::size_t used = 4;
+  for (const Near& near : near_)
+  {
+    const bool directed = !nearest.away.isZero(0) && !near.away.isZero(0);
+    const double turn = directed ? bend + (nearest.away - near.away).norm() * radius : 2 * radius;
+    if (near.distance > (d + std::min(turn, 2 * radius)) * (1 + margin))
+      continue;
+    if (used == 4)
     {
-      groups_.emplace_back();
-      groups_.back().least = found[n].first - margin * reach;
-      groups_.back().x.fill(std::numeric_limits<float>::quiet_NaN());
+      Group group;
+      group.distance = std::numeric_limits<float>::infinity();
+      group.away.fill(Eigen::Array4f::Zero());
+      group.index.fill(-1);
+      groups_.push_back(group);
+      used = 0;
     }
     Group& group = groups_.back();
-    const auto& [a, b, c] = tree_->corners_[found[n].second];
-    const Vector3d middle = (1.0 / 3) * (a + b + c);
-    const double radius =
-        std::sqrt(std::max({ (a - middle).squaredNorm(), (b - middle).squaredNorm(), (c - middle).squaredNorm() }));
-    group.x[at] = static_cast<float>(middle[0] - p[0]);
-    group.y[at] = static_cast<float>(middle[1] - p[1]);
-    group.z[at] = static_cast<float>(middle[2] - p[2]);
-    group.radius[at] = static_cast<float>(radius) * (1 + float_margin);
-    group.index[at] = found[n].second;
+    const double rounding = float_margin * (near.distance + radius);
+    const auto at = static_cast<Eigen::Index>(used);
+    group.distance[at] = near.away.isZero(0) ? -1 : static_cast<float>(near.distance - rounding);
+    for (std::size_t a = 0; a < 3; ++a)
+      group.away[a][at] = static_cast<float>(near.away[static_cast<Eigen::Index>(a)]);
+    group.index[used++] = near.index;
   }
+  cube.end = groups_.size();
+  near_.clear();
 }
 
 }  // namespace frontalis

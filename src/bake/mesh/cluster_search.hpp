@@ -5,35 +5,54 @@
 namespace frontalis
 {
 
-/// Closest points of a tree for points that come in clusters, such as the samples of a lattice: the triangles around
-/// one point are kept, and as long as one of them must be the closest, no others are looked at. Results are those of
-/// TriangleTree::closest().
+/// Closest points of a tree for points that come in clusters, such as the samples of a lattice: the triangles that can
+/// be the closest to a point of a cube are kept, and those of its eighths where many points are asked for. Results are
+/// those of TriangleTree::closest(). Not thread-safe.
 class ClusterSearch
 {
 public:
-  /// `extent` [m]: kept triangles serve at least all points within half of it of the point that they were found for.
+  /// A point outside of the present cube begins a cube of edge `extent` [m] around it.
   ClusterSearch(const TriangleTree& tree, double extent) : tree_(&tree), extent_(extent) {}
 
   ClosestPoint closest(const Vector3d& p, double bound = 1e300);
 
 private:
-  /// Triangles that are compared with a point at once: the balls around them. Coordinates count from centre_ [m].
+  /// Four triangles near a cube. Points of the cube are at least `distance` + `away` . (point - centre) from each.
   struct Group
   {
-    static constexpr std::size_t size = 8;
-    double least;                          ///< distance of the nearest of them from centre_ [m]
-    std::array<float, size> x, y, z;       ///< middles; those of unused ones are not numbers
-    std::array<float, size> radius;        ///< of the balls [m]
-    std::array<std::int32_t, size> index;  ///< in TriangleTree::order_
+    Eigen::Array4f distance;
+    std::array<Eigen::Array4f, 3> away;
+    std::array<std::int32_t, 4> index{};  ///< in TriangleTree::order_
   };
-  void gather(const Vector3d& p, double reach);
+  struct Cube
+  {
+    Vector3d centre{ 0, 0, 0 };
+    double half = 0;                 ///< half of an edge [m]
+    std::size_t begin = 0, end = 0;  ///< range in groups_
+  };
+  /// A triangle that is added to a cube.
+  struct Near
+  {
+    std::int32_t index;  ///< in TriangleTree::order_
+    double distance;     ///< from the cube's centre [m]
+    Vector3d away;       ///< unit vector from the triangle to the centre; 0 if both are too near for a direction
+  };
+  ClosestPoint begin(const Vector3d& p, double bound);
+  void gather();
+  void divide(std::size_t eighth);
+  void add(const Vector3d& centre, std::int32_t index);
+  void add_groups(Cube& cube);
 
   const TriangleTree* tree_;
   double extent_;
-  Vector3d centre_{ 0, 0, 0 };
-  double reach_ = -1;          ///< all triangles within this of centre_ are kept [m]; below 0: none yet
-  std::vector<Group> groups_;  ///< by ascending distance
-  std::int32_t latest_ = -1;   ///< index in TriangleTree::order_ of the triangle found last; -1: none
+  ClosestPoint first_;                    ///< of the first point of the present cube, its centre
+  int asked_ = 0;                         ///< number of further points in the present cube
+  std::vector<Cube> cubes_;               ///< the present one and its eighths; empty: no point was asked for yet
+  std::array<std::size_t, 8> eighths_{};  ///< indices in cubes_; 0: not made yet
+  double reach_ = 0;  ///< triangles farther than this from the first cube's centre may be missing [m]
+  std::vector<Group> groups_;
+  std::vector<Near> near_;    ///< of the cube that is made
+  std::int32_t latest_ = -1;  ///< index in TriangleTree::order_ of the triangle found last; -1: none
 };
 
 }  // namespace frontalis

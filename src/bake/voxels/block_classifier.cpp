@@ -14,10 +14,12 @@ BlockClassifier::BlockClassifier(const Volumes& volumes, const Grid& grid, int s
       voxel_volume_(grid.spacing[0] * grid.spacing[1] * grid.spacing[2]),
       reach_(0.5 * grid.spacing.norm()),
       nearby_body_(volumes.bodies()),
-      nearby_depth_(volumes.depth_fields().size()),
       body_here_(volumes.bodies()),
       depth_here_(volumes.depth_fields().size())
 {
+  // a cube around the middle that is used has all samples of the voxel
+  for (const auto& field : volumes.depth_fields())
+    nearby_depth_.push_back({ ClusterSearch(field.surface->tree(), 1.03 * grid.spacing.maxCoeff()) });
   // the first sample is the middle of the voxel
   for (int s = 0; s < samples * samples * samples; ++s)
   {

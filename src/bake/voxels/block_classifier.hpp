@@ -1,5 +1,6 @@
 #pragma once
 
+#include "bake/mesh/cluster_search.hpp"
 #include "bake/voxels/voxelise.hpp"
 
 namespace frontalis
@@ -100,11 +101,11 @@ private:
   };
   struct NearbyDepth
   {
+    ClusterSearch search;  ///< of points in the voxel, the middle first
     bool known = false;
-    std::int32_t triangle = -1;  ///< triangle closest to the voxel's middle
-    double distance = 0;         ///< distance of the middle from the surface [m]
-    double depth = 0;            ///< depth of the middle [m]
-    bool steady = false;         ///< false: a border is so near that the depth may change sign without passing 0
+    double distance = 0;  ///< distance of the middle from the surface [m]
+    double depth = 0;     ///< depth of the middle [m]
+    bool steady = false;  ///< false: a border is so near that the depth may change sign without passing 0
   };
   Vector3d middle_{ 0, 0, 0 };
   std::vector<NearbyBody> nearby_body_;

@@ -242,8 +242,13 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
         list.push_back({ {}, bone, constraint.friction, {} });
         sheets.emplace_back();
       }
-      list[index].name += (sheets[index].empty() ? "" : ", ") + sheet.name();
-      sheets[index].push_back({ &whole, &sheet });
+      std::vector<SlidingSurface>& sheets_here = sheets[index];
+      const auto is_it = [&](const SlidingSurface& other) { return other.whole == &whole; };
+      if (std::none_of(sheets_here.begin(), sheets_here.end(), is_it))
+      {
+        list[index].name += (sheets_here.empty() ? "" : ", ") + sheet.name();
+        sheets_here.push_back({ &whole, &sheet });
+      }
       return static_cast<std::int32_t>(index);
     };
     std::map<const PreparedSurface*, std::int32_t> indices;

@@ -158,19 +158,17 @@ bool faces(const std::vector<const PreparedSurface*>& others, const std::array<V
                      });
 }
 
-/// The triangles of a surface that are not in its sheet. The triangles have the same order in both.
-TriangleMesh rest_of(const SlidingSurface& surface)
+/// For each triangle of a surface its number in the sheet, which has them in the same order; -1: it is not in the
+/// sheet.
+std::vector<std::int32_t> numbers_in_sheet(const SlidingSurface& surface)
 {
   const TriangleMesh &whole = surface.whole->mesh(), &sheet = surface.sheet->mesh();
-  std::vector<bool> left_out(whole.triangles.size(), true);
-  std::size_t next = 0;  // triangle of the sheet
-  for (std::size_t t = 0; t < left_out.size() && next < sheet.triangles.size(); ++t)
+  std::vector<std::int32_t> number(whole.triangles.size(), -1);
+  std::int32_t next = 0;
+  for (std::size_t t = 0; t < number.size() && next < static_cast<std::int32_t>(sheet.triangles.size()); ++t)
     if (corners(whole, whole.triangles[t]) == corners(sheet, sheet.triangles[next]))
-    {
-      left_out[t] = false;
-      ++next;
-    }
-  return keep_triangles(whole, left_out);
+      number[t] = next++;
+  return number;
 }
 
 /// Distance of points from one sheet of a field.
@@ -178,42 +176,52 @@ class SheetDistance
 {
 public:
   explicit SheetDistance(const SlidingSurface& of)
-      : of_(of),
-        on_rim_(rim_features(of.sheet->mesh())),
-        rest_(std::make_unique<TriangleMesh>(rest_of(of))),
-        rest_tree_(*rest_)
+      : of_(of), on_rim_(rim_features(of.sheet->mesh())), number_(numbers_in_sheet(of))
   {
   }
 
   /// Searches of one thread, for points that lie close together; `extent`: see ClusterSearch.
   struct Searches
   {
-    ClusterSearch sheet, rest;
+    ClusterSearch sheet, whole;
   };
-  Searches searches(double extent) const { return { { of_.sheet->tree(), extent }, { rest_tree_, extent } }; }
+  Searches searches(double extent) const { return { { of_.sheet->tree(), extent }, { of_.whole->tree(), extent } }; }
 
-  const Vector3d& normal(const ClosestPoint& closest) const { return of_.sheet->pseudonormal(closest); }
-
-  SurfaceDistance at(const Vector3d& p, const ClosestPoint& closest, Searches& searches) const
+  struct Closest
   {
-    const Vector3d away = p - closest.point;
+    ClosestPoint sheet;  ///< the closest point of the sheet
+    ClosestPoint whole;  ///< that of the whole surface, if it is closed
+  };
+  Closest closest(const Vector3d& p, double bound, Searches& searches) const
+  {
+    if (!of_.whole->closed())
+      return { searches.sheet.closest(p, bound), {} };
+    const ClosestPoint whole = searches.whole.closest(p, bound);
+    ClosestPoint sheet = whole;
+    if (whole.triangle >= 0)
+      sheet.triangle = number_[whole.triangle];
+    // a sheet is searched alone only where another part of its surface is closer
+    return { whole.triangle < 0 || sheet.triangle >= 0 ? sheet : searches.sheet.closest(p, bound), whole };
+  }
+
+  const Vector3d& normal(const Closest& closest) const { return of_.sheet->pseudonormal(closest.sheet); }
+
+  SurfaceDistance at(const Vector3d& p, const Closest& closest) const
+  {
+    const Vector3d away = p - closest.sheet.point;
     const double height = away.dot(normal(closest));
-    const bool at_rim = on_rim_[closest.triangle][closest.feature];
     // A point inside a closed surface counts as below its sheet, also if another part of the surface is closer.
-    const double bound = closest.distance + 1e-9;
-    if (height > 0 && of_.whole->closed() && searches.rest.closest(p, bound).triangle >= 0 &&
-        of_.whole->signed_distance(p, of_.whole->tree().closest(p, bound)) < 0)
-      return -closest.distance;
-    if (at_rim)
+    if (height > 0 && of_.whole->closed() && of_.whole->signed_distance(p, closest.whole) < 0)
+      return -closest.sheet.distance;
+    if (on_rim_[closest.sheet.triangle][closest.sheet.feature])
       return { height, (away - height * normal(closest)).norm() };
-    return std::copysign(closest.distance, height);
+    return std::copysign(closest.sheet.distance, height);
   }
 
 private:
   SlidingSurface of_;
   std::vector<std::array<bool, 7>> on_rim_;
-  std::unique_ptr<TriangleMesh> rest_;  ///< the whole surface without the sheet
-  TriangleTree rest_tree_;
+  std::vector<std::int32_t> number_;  ///< see numbers_in_sheet()
 };
 
 /// Distance from several sheets: a mean of the nearest one and of others that are at most 1 mm farther. Others have
@@ -223,31 +231,32 @@ SurfaceDistance distance_from(const std::vector<SheetDistance>& sheets, std::vec
                               const Vector3d& p)
 {
   constexpr double hardly_farther = 1e-3, widest_gap = 5e-3;  // [m]
-  std::vector<ClosestPoint> closest;
+  std::vector<SheetDistance::Closest> closest;
+  closest.reserve(sheets.size());
   std::size_t nearest = 0;
+  const auto distance = [&closest](std::size_t s) { return closest[s].sheet.distance; };
   for (std::size_t s = 0; s < sheets.size(); ++s)
   {
-    const double bound = s == 0 ? 1e300 : closest[nearest].distance + widest_gap;
-    closest.push_back(searches[s].sheet.closest(p, bound));
-    if (closest[s].triangle >= 0 && closest[s].distance < closest[nearest].distance)
+    closest.push_back(sheets[s].closest(p, s == 0 ? 1e300 : distance(nearest) + widest_gap, searches[s]));
+    if (closest[s].sheet.triangle >= 0 && distance(s) < distance(nearest))
       nearest = s;
   }
   const Vector3d& normal = sheets[nearest].normal(closest[nearest]);
-  SurfaceDistance sum = sheets[nearest].at(p, closest[nearest], searches[nearest]);
+  SurfaceDistance sum = sheets[nearest].at(p, closest[nearest]);
   double weights = 1;
   for (std::size_t s = 0; s < sheets.size(); ++s)
   {
-    if (s == nearest || closest[s].triangle < 0)
+    if (s == nearest || closest[s].sheet.triangle < 0)
       continue;
     const double alike = std::max(0.0, normal.dot(sheets[s].normal(closest[s])));
-    const double farther = (closest[s].distance - closest[nearest].distance) / hardly_farther;
+    const double farther = (distance(s) - distance(nearest)) / hardly_farther;
     // a point between two sheets is not past their rims
     if (alike > 0)
       sum.past_rim = 0;
     if (farther >= 1)
       continue;
     const double weight = std::pow((1 - farther) * alike, 2);
-    sum.value += weight * sheets[s].at(p, closest[s], searches[s]).value;
+    sum.value += weight * sheets[s].at(p, closest[s]).value;
     weights += weight;
   }
   sum.value /= weights;

@@ -9,7 +9,8 @@ void BlockClassifier::sample(const Box& box, const BlockState& state)
   tissue_offset_.setZero();
   for (NearbyBody& body : nearby_body_)
     body.known = false;
-  std::fill(nearby_depth_.begin(), nearby_depth_.end(), NearbyDepth());
+  for (NearbyDepth& depth : nearby_depth_)
+    depth.known = false;
   // avoid the exact centre, because scenes that are symmetric to the grid have edges and corners of surfaces there
   middle_ = box.center() + Vector3d(0.0131, 0.0073, -0.0113).cwiseProduct(grid_.spacing);
 
@@ -120,9 +121,8 @@ double BlockClassifier::sample_depth(std::size_t field, const Vector3d& p, const
   NearbyDepth& nearby = nearby_depth_[field];
   if (!nearby.known)
   {
-    const ClosestPoint closest = surface->tree().closest(middle_);
+    const ClosestPoint closest = nearby.search.closest(middle_);
     nearby.known = true;
-    nearby.triangle = closest.triangle;
     nearby.distance = closest.distance;
     nearby.depth = -surface->signed_distance(middle_, closest);
     nearby.steady = surface->closed() || !surface->rim_within(middle_, closest.distance + 2.2 * reach_);
@@ -132,9 +132,7 @@ double BlockClassifier::sample_depth(std::size_t field, const Vector3d& p, const
   const auto next = std::lower_bound(thresholds.begin(), thresholds.end(), nearby.depth - way);
   if (nearby.steady && (next == thresholds.end() || *next > nearby.depth + way))
     return here = nearby.depth;
-  const ClosestPoint closest =
-      surface->tree().closest(p, (nearby.distance + way) * (1 + 1e-9) + 1e-12, nearby.triangle);
-  return here = -surface->signed_distance(p, closest);
+  return here = -surface->signed_distance(p, nearby.search.closest(p, (nearby.distance + way) * (1 + 1e-9) + 1e-12));
 }
 
 void BlockClassifier::add_share(const std::vector<Answer>& inside, const std::vector<double>& depth, double share)
