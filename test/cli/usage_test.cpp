@@ -52,6 +52,7 @@ TEST(Usage, wrong_options_end_with_2_and_one_message)
     { "run", scene, "--vtp" },
     { "fit", scene },
     { "retarget", scene, "-o", "found.csv" },
+    { "calibrate", scene, "joints.csv", "landmarks.csv" },
     { "verify", "--only", "no_such_case" },
   };
   for (const std::vector<std::string>& arguments : wrong)
