@@ -55,6 +55,7 @@ TEST(Usage, wrong_options_end_with_2_and_one_message)
     { "rest", scene, "-o", "rest.vtkhdf", "--creases", "smile" },
     { "rest", scene, "-o", "rest.vtkhdf", "--neutral", "--set", "0.5" },
     { "retarget", scene, "-o", "found.csv" },
+    { "calibrate", scene, "joints.csv", "landmarks.csv" },
     { "verify", "--only", "no_such_case" },
   };
   for (const std::vector<std::string>& arguments : wrong)

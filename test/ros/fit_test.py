@@ -41,7 +41,7 @@ class Fit(unittest.TestCase):
         self.face.command(lift=0.4)
         wait(lambda: self.face.target() == {"lift": 0.4}, "the command")
         self.assertTrue(self.face.step(1.0).success)
-        wait(lambda: self.face.state.time > 0.99, "the state")
+        self.face.wait_for_frame(lambda: self.face.state.time > 0.99, "the state and its landmarks")
         lifted = self.face.height("tip") - rest
         self.assertGreater(lifted, 1e-3)
         self.assertTrue(self.face.reset().success)
