@@ -22,7 +22,7 @@ public:
   /// the activations. Returns the skin at the end, in the face frame. `watch` is called with the completed fraction.
   /// Throws Unstable if the guard stops the motion, Error if the skin is not finite, and Interrupted after Ctrl-C.
   const SkinState& take(const Controls& pose, double seconds, const std::function<void(double done)>& watch);
-  /// Controls and activations at the end of the latest take().
+  /// Of the skin that was taken last.
   const Controls& controls() const { return solver_->controls(); }
   const std::vector<float>& activation() const { return solver_->activation(); }
 

@@ -100,9 +100,8 @@ std::ptrdiff_t neighbour(const SampledField& field, std::size_t place, const std
 
 constexpr int width = DistanceField::brick_row;
 
-// Calls visit(sample, way) for all samples of a brick. `way` points, in bricks, to the brick that owns the cell around
-// the sample. The middle sample of each cubic block comes first, because its result speeds up the searches for the
-// samples around it.
+// Calls visit(sample, way) for the samples of a brick. `way`: steps from this brick to the one that owns the cell
+// around the sample. The middle sample of each cubic block comes first, because its search helps those around it.
 template <class Visit>
 void visit_samples(const Visit& visit)
 {

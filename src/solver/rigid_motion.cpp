@@ -22,8 +22,7 @@ bool is_rigid_motion(const RigidTransform& pose)
 
 RigidTransform interpolate(const RigidTransform& from, const RigidTransform& to, double fraction)
 {
-  // Finds the axis and angle of the rotation from `from` to `to`. Rodrigues' formula then applies the fraction of the
-  // angle.
+  // axis and angle of the rotation from `from` to `to`; Rodrigues' formula applies the fraction of it
   const auto& a = from.rotation;
   const auto& b = to.rotation;
   double r[3][3];

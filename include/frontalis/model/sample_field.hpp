@@ -22,8 +22,8 @@ using Distance = std::function<SurfaceDistance(const std::array<double, 3>&)>;
 using Loop = std::function<void(std::size_t count, const std::function<void(std::size_t)>& body)>;
 void one_by_one(std::size_t count, const std::function<void(std::size_t)>& body);
 
-/// Distances are requested for clusters of points, beginning with the middle point of a cluster. This is the largest
-/// distance between two points of a cluster, in spacings.
+/// Distances are asked for in clusters of points, the middle one first. This is the largest distance between two points
+/// of a cluster, in spacings.
 constexpr double cluster_extent = 7;
 
 /// Samples a distance every `spacing` [m] in all bricks (physics/distance_field.hpp) that sliding nodes can reach. A

@@ -15,7 +15,7 @@ struct Shell
   double thickness = 0;       ///< [m]
   std::int32_t material = 0;  ///< index into Model::materials, of which only the stiffness at rest counts
   TriangleMesh surface;       ///< the middle of the layer at rest, local; edges are about as long as a voxel's
-  Binding binding;            ///< binding of the surface's vertices
+  Binding binding;            ///< of its vertices
 };
 
 }  // namespace frontalis

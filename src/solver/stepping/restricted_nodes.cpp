@@ -142,7 +142,7 @@ void RestrictedNodes<Real>::renew(void* self, std::int32_t block, int lane, cons
 {
   auto& nodes = *static_cast<RestrictedNodes*>(self);
   const auto index = nodes.block_sliding_[block][lane];
-  // The kernel also calls this function for a node that does not slide, if the node's displacement is NaN.
+  // the kernel calls this also for a node that does not slide, if its displacement is NaN
   if (index < 0)
     return;
   const Sliding& s = nodes.sliding_[index];

@@ -20,9 +20,8 @@ public:
   /// State of sliding nodes on their surfaces.
   struct Contacts
   {
-    /// state of nodes on moving surfaces, or of all sliding nodes if any surface has friction
-    typename GlidingNodes<Real>::States gliding;
-    std::vector<Block> blocks;  ///< state of the other sliding nodes
+    typename GlidingNodes<Real>::States gliding;  ///< of nodes on moving surfaces; of all nodes if any has friction
+    std::vector<Block> blocks;                    ///< of the other nodes
   };
 
   /// `kernel` may also read the nodes of a plane that lie between sliding nodes, and write them back unchanged.

@@ -18,7 +18,7 @@ using Eigen::VectorXd;
 
 constexpr double millimetre = 1e-3;
 
-// The landmarks of the model that the track contains.
+// the landmarks of the model that the track has
 std::vector<std::size_t> landmarks_of(const Model& model, const LandmarkTrack& track)
 {
   std::vector<std::size_t> out;
@@ -34,7 +34,7 @@ std::vector<std::size_t> landmarks_of(const Model& model, const LandmarkTrack& t
   return out;
 }
 
-// Displacements from rest, one vector per time; NaN for landmarks that the track does not contain.
+// displacements from rest per time; NaN for landmarks that the track does not have
 std::vector<VectorXd> targets_of(const LandmarkTrack& track, const std::vector<std::size_t>& landmarks, Index size)
 {
   std::vector<VectorXd> out(track.time.size(), VectorXd::Constant(size, NAN));
