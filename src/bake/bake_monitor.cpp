@@ -53,7 +53,7 @@ void parallel_for(BakeMonitor& monitor, std::size_t count, std::size_t grain,
   std::mutex mutex;
   const auto call = [&](std::size_t index)
   {
-    // calls of lower indices still run after a failure, so that the message does not depend on the threads
+    // After a failure, calls of lower indices still run, so that the message does not depend on the threads.
     if (index > failed)
       return;
     try

@@ -37,8 +37,8 @@ private:
 };
 
 /// Calls body(0) .. body(count - 1) on all cores, about `grain` calls per task. Each call may write only data of its
-/// own index. Meanwhile the calling thread reports progress; if the caller then interrupts the bake, no further task
-/// begins. If calls throw, the exception of the lowest index is rethrown.
+/// own index. Meanwhile the calling thread reports progress; if the caller interrupts the bake, no further task begins.
+/// If calls throw, the exception of the lowest index is rethrown.
 void parallel_for(BakeMonitor& monitor, std::size_t count, std::size_t grain,
                   const std::function<void(std::size_t)>& body);
 

@@ -4,7 +4,7 @@
 
 #include <Eigen/Geometry>
 
-// standard headers used by nearly every file of the bake
+// Standard headers that nearly every file of the bake uses:
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -34,7 +34,7 @@ inline double squared_distance_to_segment(const Vector3d& p, const Vector3d& a, 
 /// sequences, 2018).
 inline Vector3d spread_point(const Box& box, int i)
 {
-  // the steps along the axes are 1/g, 1/g^2 and 1/g^3 with g^4 = g + 1
+  // The steps along the axes are 1/g, 1/g^2 and 1/g^3 with g^4 = g + 1.
   const Vector3d step{ 0.8191725133961645, 0.6710436067037893, 0.5497004779019703 };
   Vector3d p;
   for (int a = 0; a < 3; ++a)

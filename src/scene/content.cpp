@@ -85,7 +85,7 @@ void add_surface(const Surface& surface, Content& content)
   content.line("surface", surface.name);
   if (!surface.shape)
   {
-    // the extension of the file name determines the mesh format
+    // The extension of the file name determines the mesh format.
     content.add("file", std::filesystem::path(surface.file).extension().string(), surface.unit,
                 hash_of_file(surface.file));
     if (surface.subdivide > 0 || surface.mirror >= 0)
@@ -198,8 +198,8 @@ std::string content_hash(const std::string& content)
   return fmt::format("{:016x}", hash);
 }
 
-// Numbers are in SI units. A hash of the file's bytes replaces the path of each mesh file. Line numbers and the
-// settings of profiles that are not chosen are left out.
+// Returns the content of a scene as text, with numbers in SI units. A hash of the file's bytes replaces the path of
+// each mesh file. Line numbers and the settings of profiles that are not chosen are left out.
 std::string content_of(const Scene& scene)
 {
   Content content;

@@ -89,12 +89,12 @@ double parse_quantity(const std::string& text, Dimension dimension, double lengt
     return Error("'" + found + "' " + fault + "; must be a number" +
                  (names.empty() ? " without a unit" : ", alone or with one of the units " + names));
   };
-  // the spellings of YAML and C
+  // The spellings of YAML and C.
   static const std::regex not_finite("[-+]?\\.?(inf|infinity|nan)", std::regex::icase);
   if (std::regex_match(found, not_finite))
     throw refusal("is not finite");
 
-  // std::from_chars does not depend on the locale, but does not accept a leading plus
+  // std::from_chars does not depend on the locale, but does not accept a leading plus.
   const char* begin = found.data() + (found.size() > 1 && found[0] == '+' && found[1] != '-' ? 1 : 0);
   const char* end = found.data() + found.size();
   double value = 0;

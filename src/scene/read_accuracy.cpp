@@ -93,7 +93,7 @@ bool is_profile_file(const std::string& accuracy)
   return extension == ".yaml" || extension == ".yml";
 }
 
-// reads a file with one profile, NAME: {...}, in the format of the scene's section `accuracy`
+// Reads a file with one profile, NAME: {...}, in the format of the scene's section `accuracy`.
 AccuracyProfile read_profile_file(const std::string& path, double length_unit, const SceneNames& names)
 {
   const YAML::Node yaml = load_yaml(path, "accuracy profile", "one profile, NAME: {voxel: ...}");
@@ -116,7 +116,7 @@ auto find_profile(Scene& scene, const std::string& name)
                       [&](const AccuracyProfile& profile) { return profile.name == name; });
 }
 
-// replaces the voxel edge of the chosen profile by the one in the options, if any
+// Replaces the voxel edge of the chosen profile by the one in the options, if there is one.
 void override_voxel(const Node& node, const SceneOptions& options, Scene& scene)
 {
   double edge = options.voxel;
@@ -135,7 +135,7 @@ void override_voxel(const Node& node, const SceneOptions& options, Scene& scene)
   if (!(edge > 0))
     return;
   scene.accuracy.voxel = { edge, edge, edge };
-  // the measured error and cost hold for the original voxels only
+  // The measured error and cost hold for the original voxels only.
   scene.accuracy.measured = {};
   if (const auto profile = find_profile(scene, scene.accuracy.name); profile != scene.profiles.end())
     profile->measured = {};
@@ -171,7 +171,7 @@ void read_accuracy(const Node& node, const SceneOptions& options, Scene& scene, 
   if (is_profile_file(options.accuracy))
   {
     scene.accuracy = read_profile_file(options.accuracy, node.context().length_unit, names);
-    // the profile from the file replaces a profile of the same name in the scene
+    // The profile from the file replaces a profile of the same name in the scene.
     if (const auto same = find_profile(scene, scene.accuracy.name); same != scene.profiles.end())
       scene.profiles.erase(same);
     scene.profiles.push_back(scene.accuracy);

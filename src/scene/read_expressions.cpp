@@ -12,7 +12,7 @@ namespace
 constexpr Bound of_units{ -1, 1 };  // weights of muscles in action units; negative weights lower a tone
 
 /// Reads poses of the face. Poses in the scene file may name only muscles and bones of the scene. Poses in a `shared`
-/// file may name others, which are left out; a pose of which nothing is left is left out too.
+/// file may name others, which are left out; a pose that becomes empty is left out too.
 class PoseReader
 {
 public:

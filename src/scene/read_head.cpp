@@ -125,7 +125,7 @@ void read_outline(const Node& node, HeadTemplate::Solid& solid)
 HeadTemplate::Solid read_solid(const Node& entry)
 {
   using Kind = HeadTemplate::Solid::Kind;
-  // the names of Solid::Kind, in its order
+  // The names of Solid::Kind, in its order.
   static const std::vector<std::string> kinds{ "below", "above", "ellipsoid", "outline", "tube", "teeth" };
   HeadTemplate::Solid solid;
   Mapping mapping(entry);
@@ -270,7 +270,8 @@ void read_vertices(const Node& node, Names& landmarks, HeadTemplate& head)
     }
 }
 
-/// Reads a set of landmarks. An entry has a name, a number, or two numbers: of the left point and of its mirror image.
+/// Reads a set of landmarks. An entry has a name, a number, or two numbers: those of the left point and of its mirror
+/// image.
 void read_points(const std::string& set, const Node& list, HeadTemplate& head)
 {
   for (const Node& entry : list.entries())
@@ -347,7 +348,7 @@ HeadTemplate::Joint read_joint(const Node& node)
   Mapping fields(node);
   joint.at = read_place(fields.required("at", "a position"));
   joint.axis = fields.required("axis", "a direction").direction(joint.axis);
-  // the file has lengths per degree
+  // The file has lengths per degree.
   joint.slide = fields.optional("slide").vector(Dimension::length, any_number, joint.slide);
   for (double& x : joint.slide)
     x *= 180 / 3.14159265358979323846;

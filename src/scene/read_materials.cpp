@@ -62,7 +62,7 @@ double read_parameter(const physics::Parameter& parameter, Mapping& mapping)
   return value;
 }
 
-// reads one fibre direction, or the directions of two fibre families, which may follow a surface
+// Reads one fibre direction, or the directions of two fibre families, which may follow a surface.
 void read_directions(int count, Mapping& mapping, const SceneNames& names, SceneMaterial& material)
 {
   if (count == 1)
@@ -80,7 +80,7 @@ void read_directions(int count, Mapping& mapping, const SceneNames& names, Scene
   }
 }
 
-// reads the parameters [SI units] and directions of the law
+// Reads the parameters [SI units] and directions of the law.
 void read_law(Law law, const Node& node, Mapping& mapping, const SceneNames& names, SceneMaterial& material)
 {
   const physics::MaterialDescription& description = physics::description_of(law);

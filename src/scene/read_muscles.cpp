@@ -156,7 +156,7 @@ void read_muscles(const Node& node, Scene& scene, SceneNames& names)
   const auto place = [&](const std::string& name)
   { return std::find_if(scene.muscles.begin(), scene.muscles.end(), [&](const auto& m) { return m.name == name; }); };
   std::map<std::string, std::string> materials;
-  // read sets first, so that the entry of a single muscle replaces the values of its set
+  // Sets are read first, so that the entry of a single muscle replaces the values of its set.
   for (const auto& [name, entry] : entries)
     if (entry.has("each"))
     {
@@ -183,7 +183,7 @@ void read_muscles(const Node& node, Scene& scene, SceneNames& names)
   {
     if (entry.has("each"))
       continue;
-    // a name without a side means both muscles of a set
+    // A name without a side means both muscles of a set.
     Names made{ "muscle", {}, true };
     for (const SceneMuscle& muscle : scene.muscles)
       made.names.push_back(muscle.name);

@@ -18,7 +18,7 @@ void read_frame(const Node& node, FaceFrame& frame)
   frame.forward = mapping.optional("forward").direction(frame.forward);
   frame.up = up.direction(frame.up);
 
-  // make `up` orthogonal to `forward`
+  // Makes `up` orthogonal to `forward`.
   const Vector3& f = frame.forward;
   const double along = frame.up[0] * f[0] + frame.up[1] * f[1] + frame.up[2] * f[2];
   const Vector3 across{ frame.up[0] - along * f[0], frame.up[1] - along * f[1], frame.up[2] - along * f[2] };

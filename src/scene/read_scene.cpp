@@ -23,7 +23,7 @@ std::string read_text(const std::string& path, const std::string& what)
   return { std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>() };
 }
 
-// leaves out the tissues of the library that nothing uses
+// Leaves out the tissues of the library that nothing uses.
 void leave_out_unused(Scene& scene)
 {
   const auto unused = [&](const SceneMaterial& material)
@@ -44,7 +44,7 @@ void read_root(const Node& root, const SceneOptions& options, Scene& scene)
 {
   Mapping mapping(root);
   SceneNames names;
-  // the unit is read first because all lengths depend on it
+  // The unit is read first, because all lengths depend on it.
   scene.unit = read_length_unit(mapping.required("unit", "the length unit of plain numbers: m, cm, mm, um or in"), 1);
   root.context().length_unit = scene.unit;
   const Node mesh_directory = mapping.optional("mesh_dir");

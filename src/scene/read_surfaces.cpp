@@ -11,7 +11,7 @@ namespace
 
 double read_length(const Node& node) { return node.number(Dimension::length, positive, 0); }
 
-// Folder of the mesh files. Its existence is checked when the first file is read, since shapes need no folder.
+// Folder of the mesh files. Its existence is checked when the first file is read, because shapes need no folder.
 class MeshFolder
 {
 public:
@@ -162,7 +162,7 @@ void read_head(Mapping& mapping, MeshFolder& folder, Shape& shape, Parts& parts)
 
 Shape read_shape(const Node& kind_node, Mapping& mapping, MeshFolder& folder, Parts& parts)
 {
-  // the names of Shape::Kind, in its order
+  // The names of Shape::Kind, in its order.
   static const std::vector<std::string> kinds{ "box", "sphere", "ellipsoid", "cylinder", "torus", "forehead", "head" };
   const std::string name = kind_node.choice(kinds);
   Shape shape;
@@ -238,7 +238,7 @@ void read_surfaces(const Node& node, const Node& mesh_directory, const SceneOpti
   {
     surface.unit = node.context().length_unit;
     parts = {};
-    // ask only for the key that is present: messages about unknown keys list all keys that were asked for
+    // Only the key that is present is asked for, because messages about unknown keys list all keys that were asked for.
     const bool shape = mapping.has("shape");
     if (shape == mapping.has("file"))
     {
@@ -282,7 +282,7 @@ void read_surfaces(const Node& node, const Node& mesh_directory, const SceneOpti
       names.heads[name] = *surface.shape;
     for (const std::string& part : parts.names)
     {
-      // an entry with the name of a part replaces that part of the set
+      // An entry with the name of a part replaces that part of the set.
       if (std::any_of(entries.begin(), entries.end(), [&](const auto& other) { return other.first == part; }))
         continue;
       surface.name = surface.shape->part = part;

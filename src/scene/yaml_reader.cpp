@@ -25,7 +25,7 @@ bool contains(const std::vector<std::string>& texts, const std::string& text)
   return std::find(texts.begin(), texts.end(), text) != texts.end();
 }
 
-// Levenshtein distance: least number of letters to insert, delete or replace
+// Levenshtein distance: smallest number of letters to insert, delete or replace.
 std::size_t edit_distance(const std::string& a, const std::string& b)
 {
   std::vector<std::size_t> row(b.size() + 1);
@@ -239,7 +239,7 @@ std::array<double, 3> Node::direction(const std::array<double, 3>& fallback) con
     fault("found a zero vector; must have a direction");
     return fallback;
   }
-  // divide by the largest component first, so that no square overflows
+  // Components are first divided by the largest one, so that no square overflows.
   const double x = vector[0] / largest, y = vector[1] / largest, z = vector[2] / largest;
   const double length = std::sqrt(x * x + y * y + z * z);
   return { x / length, y / length, z / length };
@@ -366,7 +366,7 @@ Node Mapping::optional(const std::string& key)
 Node Mapping::required(const std::string& key, const std::string& expected)
 {
   Node node = optional(key);
-  // a value that is not a mapping has been reported already
+  // A value that is not a mapping has been reported already.
   if (!node.given() && node_.is_mapping())
     node.fault("missing; must be " + expected);
   return node;

@@ -74,7 +74,7 @@ public:
   Node(const Node&) = default;
   Node(Node&&) = default;
   ~Node() = default;
-  // YAML::Node's own assignment would overwrite the value in the tree
+  // The assignment of YAML::Node would overwrite the value in the tree.
   Node& operator=(const Node&) = delete;
   Node& operator=(Node&&) = delete;
 

@@ -66,7 +66,7 @@ protected:
   }
 };
 
-// The highest squared frequency of one voxel, divided by its bound, in a random deformation.
+// the highest squared frequency of one voxel over its bound, in a random state of deformation
 double true_over_bound(const Model& model, double amplitude)
 {
   std::vector<std::size_t> free(24);

@@ -46,8 +46,8 @@ FRONTALIS_LAW bool level_plane(const FieldValue<T>& field, const T& level, Level
 constexpr double error_left = 3.5e-6;
 
 /// Slides a node on the plane normal . u = offset (unit normal): removes the velocity along the normal (Lapeer et al.
-/// 2019) and most of the distance from the plane. Returns the removed normal velocity; times the node's mass it is the
-/// impulse of the constraint in this step, without the correction of the distance.
+/// 2019) and most of the distance from the plane. Returns the removed normal velocity. Multiplied by the node's mass,
+/// it is the impulse of the constraint in this step, without the correction of the distance.
 template <class T>
 FRONTALIS_LAW T slide(const Vec3<T>& normal, const T& offset, Vec3<T>& u, Vec3<T>& v)
 {

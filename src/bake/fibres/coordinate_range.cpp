@@ -27,7 +27,7 @@ struct Limits
         values[std::min(bins - 1, static_cast<std::size_t>(place))].emplace_back(samples[s][stretched],
                                                                                  grid.samples[s].area);
     }
-    // proportion of a bin's area beyond each limit, so that single outliers do not determine the limits
+    // Fraction of a bin's area beyond each limit. It keeps single outliers from determining the limits.
     constexpr double outermost = 0.005;
     for (std::size_t b = 0; b < bins; ++b)
     {

@@ -51,7 +51,7 @@ CornerField around(const MuscleGrid& grid, const RingHole& hole, const GridField
   return azimuth;
 }
 
-/// Nodes at an end of the muscle: those at most 0.75 cell edges farther from it than the nearest node.
+/// Nodes at an end of the muscle: those that are at most 0.75 cell edges farther from the end than the nearest node.
 std::vector<std::int32_t> nodes_at(const MuscleGrid& grid, const std::function<double(const Vector3d&)>& distance)
 {
   std::vector<double> distances;
@@ -133,7 +133,7 @@ FibreCoordinates fibre_coordinates(const MuscleGrid& grid, const FibreGuide& gui
     trusted = blend(grid, reach, shown, gradients);
   }
 
-  // Conduction is almost only along the fibres, so the slowest mode varies across them and hardly along them.
+  // Heat is conducted almost only along the fibres, so that the slowest mode varies across them and hardly along them.
   std::vector<Vector3d> fibres;
   fibres.reserve(trusted.size());
   for (const SurfaceDirection& fibre : trusted)
@@ -158,10 +158,10 @@ FibreCoordinates fibre_coordinates(const MuscleGrid& grid, const FibreGuide& gui
   for (const MuscleGrid::Sample& sample : grid.samples)
     result.samples.push_back(sample.cell < 0 ? std::array<double, 2>{ none, none }
                                              : coordinates(sample.cell, grid.weights(sample.cell, sample.point)));
-  // stretch the coordinates so that fibres end where the muscle ends and follow its sides
+  // The coordinates are stretched so that fibres end where the muscle ends and follow its sides.
   if (!guide.ring)
   {
-    // near an end, which may be cut obliquely, use the limits found 1.5 widths away from it
+    // Near an end, which may be cut obliquely, the limits found 1.5 widths away from the end are used.
     stretch(grid, 1, false, std::min(0.45, 1.5 * result.width / result.length), result);
     stretch(grid, 0, false, 0, result);
   }

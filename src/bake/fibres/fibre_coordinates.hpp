@@ -12,7 +12,7 @@ struct RingHole
   Vector3d axis;  ///< unit vector
 };
 
-/// The largest hole; none if its area is less than a twentieth of the area within the muscle's outline.
+/// The largest hole. There is none if its area is less than a twentieth of the area within the muscle's outline.
 std::optional<RingHole> find_hole(const MuscleGrid& grid);
 
 /// Two coordinates of points of a muscle, both from 0 to 1: u along the fibres and v across them, along the muscle's
@@ -23,7 +23,7 @@ struct FibreCoordinates
   std::vector<std::array<double, 2>> samples;  ///< (u, v) at the samples of the muscle's surface; NaN outside all cells
   double length = 0;                           ///< mean distance from u = 0 to u = 1 [m]
   double width = 0;                            ///< mean distance from v = 0 to v = 1 [m]
-  /// Ratio of the length along u to that along the next best direction; infinite if u follows from ends or a ring.
+  /// Ratio of the length along u to that along the next best direction. Infinite if u follows from ends or a ring.
   double distinctness = 0;
 };
 

@@ -13,9 +13,10 @@ namespace
 constexpr double wanted_cells = 1500;  // number of cells in the grid of a muscle
 // Below this ratio of length to width the shape alone does not determine the fibre direction.
 constexpr double least_distinctness = 1.1;
-constexpr double least_kept = 0.9;       // least proportion of a muscle in its largest connected component
-constexpr double largest_misfit = 0.25;  // largest RMS distance of a fitted volume from the muscle, over its width
-constexpr double farthest_end = 0.5;     // largest distance of an origin or insertion, over the muscle's length
+constexpr double least_kept = 0.9;  // smallest fraction of a muscle that must be in its largest connected component
+// largest RMS distance of a fitted volume from the muscle, divided by the muscle's width
+constexpr double largest_misfit = 0.25;
+constexpr double farthest_end = 0.5;  // largest distance of an origin or insertion, divided by the muscle's length
 
 const char* const remedy = "; give 'origin' and 'insertion', a control 'net', or one direction 'fibre'";
 
@@ -55,7 +56,7 @@ std::function<double(const Vector3d&)> distance_from(const MuscleEnd& end, const
   if (!end.surface.empty())
   {
     const PreparedSurface* surface = &named_surface(surfaces, end.surface, name);
-    // points below the surface count as being on it
+    // Points below the surface count as being on it.
     distance = [surface](const Vector3d& p)
     { return std::max(0.0, surface->signed_distance(p, surface->tree().closest(p))); };
   }
@@ -85,7 +86,7 @@ std::function<double(const Vector3d&)> distance_from(const MuscleEnd& end, const
 MuscleFibres fit_muscle(const SceneMuscle& muscle, const TriangleMesh& mesh, const PreparedSurfaces& surfaces,
                         std::string& finding)
 {
-  // coarser cells connect separate strands
+  // Strands that are separate in fine cells are connected in coarser ones.
   MuscleGrid grid = make_muscle_grid(mesh, wanted_cells);
   for (double coarser = 1.5; grid.kept < least_kept && coarser < 4; coarser *= 1.5)
     grid = make_muscle_grid(mesh, wanted_cells, coarser);

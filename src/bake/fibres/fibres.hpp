@@ -29,12 +29,13 @@ void add_fibres(const Scene& scene, const std::vector<MuscleFibres>& fibres, con
 
 /// Spreads the weights of each muscle to the neighbours of its voxels, by 1/4, 1/2 and 1/4 along each axis (the
 /// discrete delta function of Peskin 2002, Acta Numerica 11:479, two voxels wide to each side). A muscle thinner than
-/// about two voxels then pulls as evenly as a thicker one. Keeps its volume and so its force. Fills directions anew.
+/// about two voxels then pulls as evenly as a thicker one. The muscle's volume, and so its force, stays the same. Sets
+/// the fibre directions anew.
 void spread_fibres(Model& model);
 
-/// Scales each muscle's reference stress by the cross-section that the scene gives, if any, over that of the model, so
-/// that the muscle's force is that of people. The cross-section of the model is the muscle's volume in voxels over the
-/// mean length of its fibres. Lists all muscles in the report.
+/// Multiplies each muscle's reference stress by the cross-section that the scene gives, if any, divided by that of the
+/// model, so that the muscle's force is that of people. The cross-section of the model is the muscle's volume in voxels
+/// divided by the mean length of its fibres. Lists all muscles in the report.
 void scale_strength(const Scene& scene, const std::vector<MuscleFibres>& fibres, const LocalFrame& frame, Model& model,
                     BakeReport* report);
 

@@ -116,7 +116,7 @@ struct SheetFrame
 
 SheetFrame sheet_frame(const SurfaceFit& sheet, double u, double v)
 {
-  // finite differences, one-sided at the sheet's edges
+  // Finite differences, one-sided at the sheet's edges.
   constexpr double step = 0.02;
   const double v0 = std::max(0.0, v - step), v1 = std::min(1.0, v + step);
   const Vector3d tangent = (sheet.at({ u + step, v }) - sheet.at({ u - step, v })).normalized();
@@ -147,7 +147,7 @@ NurbsVolume fit_nurbs(const MuscleGrid& grid, const FibreCoordinates& coordinate
       continue;
     const auto [u, v] = coordinates.samples[s];
     const SheetFrame frame = sheet_frame(sheet, u, v);
-    // leave out the ends of the muscle, where the surface is across the fibres
+    // The ends of the muscle are left out, because the surface runs across the fibres there.
     if (std::abs(frame.tangent.dot(sample.normal)) > 0.7)
       continue;
     const Vector3d middle = sheet.at({ u, v });
@@ -172,7 +172,7 @@ NurbsVolume fit_nurbs(const MuscleGrid& grid, const FibreCoordinates& coordinate
     surface.solve(0.01);
   }
 
-  // inner control points: means of opposite control points of the outer surface
+  // Inner control points are means of opposite control points of the outer surface.
   std::vector<Vector3d> points;
   const int n = around.points();
   for (int i = 0; i < along.points(); ++i)
@@ -203,7 +203,7 @@ TriangleMesh outer_surface(const NurbsVolume& volume)
       mesh.triangles.push_back({ vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1) });
       mesh.triangles.push_back({ vertex(i, j), vertex(i + 1, j + 1), vertex(i, j + 1) });
     }
-  // caps at the ends: strips that connect opposite points of the outline
+  // Caps at the ends: strips that connect opposite points of the outline.
   for (std::int32_t j = 0; !ring && j < around / 2; ++j)
     for (const std::int32_t i : { 0, along })
     {

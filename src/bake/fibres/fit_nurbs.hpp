@@ -8,8 +8,8 @@ namespace frontalis
 {
 
 /// Fits a NURBS volume to a muscle. The volume's outer surface (w = 1) is cubic, closed around the fibres and, in a
-/// ring, also along them. It is fitted to the muscle's mesh by least squares; samples outside it have the larger
-/// weight. The inner surface (w = 0) is a sheet midway between the two sides of the muscle.
+/// ring, also along them. It is fitted to the muscle's mesh by least squares, in which samples outside the surface have
+/// more weight. The inner surface (w = 0) is a sheet midway between the two sides of the muscle.
 NurbsVolume fit_nurbs(const MuscleGrid& grid, const FibreCoordinates& coordinates, bool ring);
 
 /// Closed mesh of the volume's outer surface, with caps at its ends unless it is a ring.

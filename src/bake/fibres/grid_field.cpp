@@ -108,7 +108,7 @@ void GridField::assemble()
 
 Eigen::SparseMatrix<double> GridField::shifted() const
 {
-  // the shift is far below every eigenvalue except the eigenvalue 0 of the constant mode
+  // The shift is far below every eigenvalue except the eigenvalue 0 of the constant mode.
   const double extent = std::cbrt(mass_.sum());
   Eigen::SparseMatrix<double> matrix = matrix_;
   matrix.diagonal() += 1e-7 / (extent * extent) * mass_;
@@ -125,7 +125,7 @@ GridField::Modes GridField::slowest_modes(const Eigen::MatrixXd& start) const
   {
     Eigen::MatrixXd& x = modes.fields;
     x.rowwise() -= (mass_.transpose() * x).eval() / mass_.sum();
-    // Rayleigh-Ritz: the best modes in the span of the columns
+    // Rayleigh-Ritz method: the best modes in the span of the columns.
     const Eigen::MatrixXd gram = x.transpose() * (mass_.asDiagonal() * x);
     const Eigen::MatrixXd energy = x.transpose() * (matrix_ * x);
     const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> ritz(energy, gram);
@@ -135,7 +135,7 @@ GridField::Modes GridField::slowest_modes(const Eigen::MatrixXd& start) const
       break;
     before = modes.values(0);
     x = solver.solve(mass_.asDiagonal() * x).eval();
-    // columns of equal length keep the Gram matrix regular
+    // Columns of equal length keep the Gram matrix regular.
     for (Eigen::Index c = 0; c < x.cols(); ++c)
       x.col(c).normalize();
   }
@@ -144,7 +144,7 @@ GridField::Modes GridField::slowest_modes(const Eigen::MatrixXd& start) const
 
 Eigen::VectorXd GridField::between(const std::vector<std::pair<std::int32_t, double>>& fixed) const
 {
-  // penalty method: stiff springs hold the given values
+  // Penalty method: stiff springs hold the given values.
   Eigen::SparseMatrix<double> matrix = shifted();
   Eigen::VectorXd load = Eigen::VectorXd::Zero(mass_.size());
   const double spring = 1e6 * grid_.edge;

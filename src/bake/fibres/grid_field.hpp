@@ -65,13 +65,15 @@ std::vector<SurfaceDirection> surface_directions(const MuscleGrid& grid, double 
 /// Conductivity of each cell: 1 across its direction and 1 - certainty, but at least 0.02, along it.
 std::vector<Eigen::Matrix3d> conductivities(const std::vector<SurfaceDirection>& directions);
 
-/// Weighted mean of the surface's direction and of the gradient, smoothed over `reach` [m]. The surface's direction is
-/// weighted by its certainty times the cosine of the angle between both, which is small where a muscle is cut straight.
+/// Weighted mean of the surface's direction and of the gradient, smoothed over `reach` [m]. The weight of the surface's
+/// direction is its certainty times the cosine of the angle between the two, which is small where a muscle is cut
+/// straight.
 std::vector<SurfaceDirection> blend(const MuscleGrid& grid, double reach,
                                     const std::vector<SurfaceDirection>& directions,
                                     const std::vector<Vector3d>& gradients);
 
-/// Maps a value of a field to the mean distance [m] between its isosurface and that of the field's least value.
+/// Maps a value of a field to the mean distance [m] of its isosurface from the isosurface of the field's smallest
+/// value.
 class DistanceTable
 {
 public:
@@ -84,8 +86,8 @@ private:
   std::vector<double> values_, distances_;
 };
 
-/// Rescales the coordinate of index `stretched` so that at every value of the other coordinate it runs from 0 to 1
-/// between its smoothed limits on the muscle's surface. Lines on which the other coordinate is constant keep their
+/// Rescales the coordinate with the index `stretched`, so that at every value of the other coordinate it runs from 0 to
+/// 1 between its smoothed limits on the muscle's surface. Lines on which the other coordinate is constant keep their
 /// shape. `closed`: the other coordinate runs around a ring. Where the other coordinate is closer than `ends` to 0 or
 /// 1, the limits at `ends` or 1 - `ends` are used.
 void stretch(const MuscleGrid& grid, std::size_t stretched, bool closed, double ends, FibreCoordinates& coordinates);

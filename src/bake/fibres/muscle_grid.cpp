@@ -84,8 +84,8 @@ void flood_outside(CellBox& box)
   flood<Vector3i>(Vector3i::Zero(), face_steps(), take);
 }
 
-/// Largest connected component of the cells that are not outside; faces, edges and corners connect cells. `kept`
-/// receives the proportion of these cells in the component.
+/// Largest connected component of the cells that are not outside, where cells with a common face, edge or corner are
+/// connected. `kept` receives the fraction of the cells that are in the component.
 std::vector<Vector3i> largest_part(CellBox& box, double& kept)
 {
   std::vector<Vector3i> steps;
@@ -168,12 +168,12 @@ MuscleGrid make_muscle_grid(const TriangleMesh& mesh, double wanted, double coar
   MuscleGrid grid;
   const Box bounds = bounding_box(mesh);
   const double diagonal = bounds.diagonal().norm();
-  // the edge of cells follows from the volume, or from the area if the muscle is thinner than a cell
+  // The edge of cells follows from the volume or, if the muscle is thinner than a cell, from the area.
   const double wanted_edge =
       std::max(std::cbrt(std::abs(signed_volume(mesh)) / wanted), std::sqrt(0.5 * surface_area(mesh) / (1.5 * wanted)));
   grid.edge = coarser * std::min(diagonal / 10, std::max(diagonal / 300, wanted_edge));
 
-  // the margin of 1.5 cells puts surfaces that are normal to an axis into the middle of cells
+  // The margin of 1.5 cells puts surfaces that are normal to an axis into the middle of cells.
   grid.lower = bounds.min() - Vector3d::Constant(1.5 * grid.edge);
   const Vector3i size =
       ((bounds.max() - grid.lower) / grid.edge).array().ceil().cast<int>().matrix() + Vector3i::Constant(2);
@@ -203,7 +203,7 @@ void smooth(const MuscleGrid& grid, double reach, std::vector<Eigen::Matrix3d>& 
     for (const Vector3i& step : steps)
       if (const Vector3i next = grid.cells[c] + step; numbers.holds(next) && numbers.at(next) >= 0)
         neighbours[c].push_back(numbers.at(next));
-  // each average over a cell and its six neighbours adds a variance of 2/7 edge^2 along each axis
+  // Each average over a cell and its six neighbours adds a variance of 2/7 edge^2 along each axis.
   const double averages = std::min(200.0, 3.5 * (reach / grid.edge) * (reach / grid.edge));
   std::vector<Eigen::Matrix3d> next(tensors.size());
   for (int average = 0; average < averages; ++average)

@@ -36,7 +36,8 @@ struct MuscleGrid
   std::array<double, 8> weights(std::size_t cell, const Vector3d& p) const;
 };
 
-/// Flood fill from `seed` by `steps`. take(place) returns true, once, for each place of the region, and marks it.
+/// Flood fill from `seed` by `steps`. take(place) marks a place; it returns true, only once, if the place is in the
+/// region.
 template <class Place, class Take>
 std::vector<Place> flood(const Place& seed, const std::vector<Place>& steps, const Take& take)
 {

@@ -32,7 +32,7 @@ SplineAxis::SplineAxis(int degree, int points, bool closed) : degree_(degree), p
     throw failure(
         "a spline of degree {} with {} control points; the degree must be 1 to 3, with at least degree + 1 points",
         degree, points);
-  // on a closed axis the first control points are repeated at the end
+  // On a closed axis the first control points are repeated at the end.
   const int spans = closed ? points : points - degree;
   knots_.resize(spans + 2 * degree + 1);
   for (int k = 0; k < knots_.size(); ++k)
@@ -58,7 +58,7 @@ SplineAxis::Basis SplineAxis::at(double parameter) const
     evaluate<Quadratic>(t, 2, knots_, basis);
   else
     evaluate<Linear>(t, 1, knots_, basis);
-  // on a closed axis the basis function of control point j is centred at j / points (degrees 1 and 3)
+  // On a closed axis the basis function of control point j is centred at j / points (degrees 1 and 3).
   const int shift = closed_ ? points_ - (degree_ - 1) / 2 : 0;
   for (int k = 0; k <= degree_; ++k)
     basis.point[k] = closed_ ? (span - degree_ + k + shift) % points_ : span - degree_ + k;
@@ -91,7 +91,7 @@ NurbsVolume::Point NurbsVolume::at(const Vector3d& parameter) const
   std::array<SplineAxis::Basis, 3> basis;
   for (std::size_t a = 0; a < 3; ++a)
     basis[a] = axes_[a].at(parameter[a]);
-  // value and three derivatives of the homogeneous coordinates (weight times position, weight)
+  // Value and three derivatives of the homogeneous coordinates (weight times position, weight).
   std::array<Eigen::Vector4d, 4> sum;
   sum.fill(Eigen::Vector4d::Zero());
   for (int i = 0; i <= axes_[0].degree(); ++i)
@@ -144,7 +144,7 @@ Vector3d NurbsVolume::closest(const Vector3d& p) const
       for (int b = 0; b < 3; ++b)
         matrix(a, b) = point.derivative[a].dot(point.derivative[b]);
       gradient[a] = point.derivative[a].dot(residual);
-      // a parameter at 0 or 1 that would leave [0, 1] stays where it is
+      // A parameter at 0 or 1 that would leave [0, 1] is not changed.
       if (!axes_[a].closed() && ((parameter[a] <= 0 && gradient[a] < 0) || (parameter[a] >= 1 && gradient[a] > 0)))
         gradient[a] = 0;
     }

@@ -13,7 +13,7 @@ using Pixel = Eigen::Vector2i;
 struct Image
 {
   Vector3d origin, x, y;
-  Eigen::ArrayXXi pixels;  ///< 1: muscle, 0: not known yet, -1: outside, 2 or more: number of a hole
+  Eigen::ArrayXXi pixels;  ///< 1: muscle, 0: not known yet, -1: outside, 2 or more: index of a hole
 
   /// Marks and returns an unknown pixel and all unknown pixels connected to it.
   std::vector<Pixel> fill(const Pixel& seed, int mark)
@@ -47,7 +47,7 @@ Image project(const MuscleGrid& grid, const Eigen::Matrix3d& axes, const Vector3
   image.origin = centre + (box.min()[0] - 2 * grid.edge) * image.x + (box.min()[1] - 2 * grid.edge) * image.y;
   const Pixel size = (box.sizes() / grid.edge).cast<int>() + Pixel::Constant(5);
   image.pixels.setZero(size[0], size[1]);
-  // a projected cell is rotated relative to the pixels: mark the four nearest
+  // A projected cell is rotated relative to the pixels, so that the four nearest pixels are marked.
   for (const Eigen::Vector2d& place : places)
   {
     const Pixel corner = ((place - box.min()) / grid.edge + Eigen::Vector2d::Constant(1.5)).cast<int>();

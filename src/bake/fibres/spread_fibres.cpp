@@ -11,7 +11,7 @@ void spread_fibres(Model& model)
   constexpr float least = 1e-3f;  // smaller parts of a voxel are left out
   struct Part
   {
-    double volume = 0;  // of the muscle, in voxels
+    double volume = 0;  // volume of the muscle in voxels
     Vector3d direction{ 0, 0, 0 };
   };
   const VoxelIndex index(model.voxels, model.size);

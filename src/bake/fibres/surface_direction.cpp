@@ -45,8 +45,8 @@ std::vector<SurfaceDirection> surface_directions(const MuscleGrid& grid, double 
     Eigen::Matrix3d all = Eigen::Matrix3d::Zero();
     for (const auto& sum : sums)
       all += sum[c];
-    // Only normals within 60 degrees of the principal one count, because edges between faces, such as between a slab
-    // and its ends, do not indicate fibres.
+    // Only normals within 60 degrees of the principal one count, because edges between faces, for instance between a
+    // slab and its ends, do not indicate fibres.
     const Vector3d axis = Solver(all).eigenvectors().col(2);
     Eigen::Matrix3d alike = Eigen::Matrix3d::Zero();
     for (const auto& sum : sums)
@@ -61,7 +61,8 @@ std::vector<SurfaceDirection> surface_directions(const MuscleGrid& grid, double 
       continue;
     }
     const Solver solver(alike / alike.trace());
-    // This is added to the variances, so that a smooth sheet, with two variances near 0, has no direction in its plane.
+    // This value is added to the variances, so that a smooth sheet, with two variances near 0, has no direction in its
+    // plane.
     constexpr double least_variance = 0.02;
     const Vector3d variance = solver.eigenvalues().cwiseMax(0.0).array() + least_variance;
     const double ratio = variance[0] / variance[1];
@@ -83,7 +84,7 @@ std::vector<SurfaceDirection> blend(const MuscleGrid& grid, double reach,
                                     const std::vector<SurfaceDirection>& directions,
                                     const std::vector<Vector3d>& gradients)
 {
-  // average d d^T instead of d, because the sign of a direction is arbitrary
+  // The average is that of d d^T instead of d, because the sign of a direction is arbitrary.
   std::vector<Eigen::Matrix3d> tensors;
   tensors.reserve(directions.size());
   for (std::size_t c = 0; c < directions.size(); ++c)

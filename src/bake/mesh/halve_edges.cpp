@@ -89,7 +89,7 @@ private:
       {
         if (first[c] != a && first[c] != b)
           opposite = first[c];
-        // the first half keeps corner a, the second corner b
+        // The first half keeps corner a, the second corner b.
         if (mesh_.triangles[t][c] == b)
           first[c] = middle;
         if (mesh_.triangles[t][c] == a)

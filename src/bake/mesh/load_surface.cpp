@@ -43,16 +43,16 @@ void append(const aiScene& scene, const aiNode& node, const aiMatrix4x4& parent,
     append(scene, *node.mChildren[c], transform, unit, mesh);
 }
 
-// Limits above which a surface is refused as self-intersecting: the proportion of the enclosed volume that is enclosed
-// twice or inside-out; the depth of such a region over the surface's size; for an open surface, the extent of a group
-// of crossing triangles over the surface's extent. Meshes segmented from images of a head reach 0.6 %, 1.7 % and 1.8 %;
-// surfaces that really overlap reach ten times as much (doc/baking.md).
+// Limits above which a surface is refused as self-intersecting: the fraction of the enclosed volume that is enclosed
+// twice or inside-out; the depth of such a region divided by the surface's size; for an open surface, the extent of a
+// group of crossing triangles divided by the surface's extent. Meshes segmented from images of a head reach 0.6 %, 1.7
+// % and 1.8 %; surfaces that really overlap reach ten times as much (doc/baking.md).
 constexpr double largest_overlap = 0.02;
 constexpr double deepest_overlap = 0.04;
 constexpr double widest_crossing = 0.05;
 constexpr int overlap_samples = 10000;
 
-/// The surface of a control cage: an OBJ file of polygons, mirrored and subdivided as the scene says.
+/// Makes the surface of a control cage, an OBJ file of polygons that is mirrored and subdivided as the scene says.
 TriangleMesh import_cage(const Surface& surface)
 {
   PolygonMesh cage = read_polygons(surface.file, surface.unit);
@@ -61,7 +61,8 @@ TriangleMesh import_cage(const Surface& surface)
   return subdivide(cage, surface.subdivide);
 }
 
-/// Whether an open mesh is inside-out, that is, whether the winding number of largest magnitude in its box is negative.
+/// Whether an open mesh is inside-out, that is, whether the winding number with the largest magnitude in its box is
+/// negative.
 bool open_and_inside_out(const TriangleMesh& mesh)
 {
   const TriangleTree tree(mesh);
@@ -73,14 +74,14 @@ bool open_and_inside_out(const TriangleMesh& mesh)
     if (std::abs(w) > std::abs(strongest))
       strongest = w;
   }
-  // patches and domes have smaller winding numbers: they do not enclose enough to decide
+  // Patches and domes have smaller winding numbers: they enclose too little for a decision.
   return strongest < -0.75;
 }
 
-/// The regions that a mesh's components with crossing triangles enclose twice or inside-out.
+/// The regions that those components of a mesh that have crossing triangles enclose twice or inside-out.
 struct Overlap
 {
-  double share = 0;  ///< volume of these regions over the whole enclosed volume
+  double share = 0;  ///< volume of these regions divided by the whole enclosed volume
   double depth = 0;  ///< largest distance of a point of these regions from the surface [m]
   double size = 0;   ///< cube root of the volume that the pieces enclose [m]
   Vector3d deepest{ 0, 0, 0 };

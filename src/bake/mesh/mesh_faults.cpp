@@ -24,7 +24,7 @@ using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using HalfEdgeMesh = CGAL::Surface_mesh<Kernel::Point_3>;
 using Face = HalfEdgeMesh::Face_index;
 
-constexpr double sliver_height = 0.02;  // largest height of a sliver over its longest edge
+constexpr double sliver_height = 0.02;  // largest height of a sliver divided by its longest edge
 
 Vector3d vector_of(const Kernel::Point_3& p) { return { p.x(), p.y(), p.z() }; }
 
@@ -34,7 +34,7 @@ void add(MeshFaults::Kind& kind, const Vector3d& place)
     kind.place = place;
 }
 
-/// Edges as pairs of vertex numbers, the lower one first.
+/// Edges as pairs of vertex indices, the lower one first.
 using EdgeSet = std::set<std::pair<std::size_t, std::size_t>>;
 
 /// Collects the edges that more than two triangles share.
@@ -53,7 +53,7 @@ HalfEdgeMesh half_edge_mesh(const TriangleMesh& mesh, EdgeSet& shared)
   std::vector<std::array<std::size_t, 3>> triangles(mesh.triangles.size());
   for (std::size_t t = 0; t < triangles.size(); ++t)
     std::copy(mesh.triangles[t].begin(), mesh.triangles[t].end(), triangles[t].begin());
-  // gives each of several touching bodies its own vertices, as the half-edge structure requires
+  // Each of several touching bodies gets its own vertices, as the half-edge structure requires.
   EdgeCollector collector;
   collector.edges = &shared;
   processing::orient_polygon_soup(points, triangles, CGAL::parameters::visitor(collector));
@@ -115,7 +115,7 @@ void find_crossings(const HalfEdgeMesh& mesh, MeshFaults& faults)
   if (pairs.empty())
     return;
 
-  // groups of crossing triangles: those connected by crossings or common edges
+  // Groups of crossing triangles, which are connected by crossings or common edges.
   boost::disjoint_sets_with_storage<> groups(mesh.number_of_faces());
   std::vector<bool> crosses(mesh.number_of_faces(), false);
   for (const auto& [a, b] : pairs)
@@ -185,7 +185,7 @@ MeshFaults find_mesh_faults(const TriangleMesh& mesh)
   find_thin_triangles(half_edges, faults);
   find_pieces(half_edges, faults);
   find_crossings(half_edges, faults);
-  // touching bodies were separated at their common edges: these edges are borders now, but not holes
+  // Touching bodies were separated at their common edges. These edges are borders now, but not holes.
   if (!unbalanced_edges(mesh).empty())
     faults.holes = holes_of(half_edges);
   return faults;

@@ -15,7 +15,8 @@ using Point = CGAL::Exact_predicates_inexact_constructions_kernel::Point_3;
 
 void remove_repeated_triangles(TriangleMesh& mesh, MeshRepairs& repairs)
 {
-  // Triangles with the same corners and opposite orientations cancel each other. Of equal triangles left, one is kept.
+  // Triangles with the same corners and opposite orientations cancel each other. Of equal triangles that remain, one is
+  // kept.
   std::map<Triangle, std::array<std::vector<std::size_t>, 2>> alike;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
   {
@@ -77,14 +78,14 @@ void remove_flat_triangles(TriangleMesh& mesh, MeshRepairs& repairs)
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     enter(t);
   std::vector<bool> keep(mesh.triangles.size(), true);
-  // splitting a neighbour without area adds two such triangles to the list; the limit guarantees termination
+  // Splitting a neighbour without area adds two such triangles to the list. The limit guarantees termination.
   const std::size_t limit = 10 * flat.size() + 100;
   for (std::size_t f = 0; f < flat.size() && f < limit; ++f)
   {
     const Triangle t = mesh.triangles[flat[f]];
     const std::size_t middle = middle_corner(mesh, t);
     const std::int32_t b = t[middle], c = t[(middle + 1) % 3], a = t[(middle + 2) % 3];
-    // the triangle runs along the edge from c to a, its neighbour from a to c
+    // The triangle runs along the edge from c to a, its neighbour from a to c.
     std::vector<std::size_t>& others = at_edge[{ a, c }];
     others.erase(std::remove_if(others.begin(), others.end(),
                                 [&](std::size_t other) { return !keep[other] || other == flat[f]; }),
@@ -128,7 +129,7 @@ MeshRepairs repair_mesh(TriangleMesh& mesh)
 
 std::size_t turn_inside_out_pieces(TriangleMesh& mesh, const std::vector<std::int32_t>& piece, std::size_t& nested)
 {
-  // the winding number is evaluated in front of the largest triangle of each piece
+  // The winding number is evaluated in front of the largest triangle of each piece.
   struct Largest
   {
     Vector3d middle{ 0, 0, 0 }, normal{ 0, 0, 0 };  // the normal's length is twice the triangle's area

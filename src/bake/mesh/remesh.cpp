@@ -24,7 +24,7 @@ TriangleMesh with_equal_edges(const TriangleMesh& mesh, double edge)
   std::vector<std::array<std::size_t, 3>> triangles(mesh.triangles.size());
   for (std::size_t t = 0; t < triangles.size(); ++t)
     std::copy(mesh.triangles[t].begin(), mesh.triangles[t].end(), triangles[t].begin());
-  // gives each of several touching sheets its own vertices, as the half-edge structure requires
+  // Each of several touching sheets gets its own vertices, as the half-edge structure requires.
   processing::orient_polygon_soup(points, triangles);
   HalfEdgeMesh surface;
   processing::polygon_soup_to_polygon_mesh(points, triangles, surface);

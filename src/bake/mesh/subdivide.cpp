@@ -19,7 +19,7 @@ struct Edge
   std::array<std::int32_t, 2> faces{ -1, -1 };
 };
 
-/// The edges of a mesh and, for each corner of a face, the number of the edge to the next corner.
+/// The edges of a mesh and, for each corner of a face, the index of the edge to the next corner.
 struct EdgeTable
 {
   std::vector<Edge> edges;

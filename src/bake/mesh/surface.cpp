@@ -12,7 +12,7 @@ PreparedSurface::PreparedSurface(std::string name, TriangleMesh mesh)
       box_(bounding_box(mesh_)),
       rim_(unbalanced_edges(mesh_))
 {
-  // pseudonormals: of an edge the sum of its faces' normals, of a vertex this sum weighted by the faces' angles
+  // Pseudonormals: for an edge the sum of its faces' normals, for a vertex this sum weighted by the faces' angles.
   std::map<std::pair<std::int32_t, std::int32_t>, Vector3d> edges;
   vertex_normals_.assign(mesh_.vertices.size(), Vector3d::Zero());
   for (const Triangle& t : mesh_.triangles)
@@ -118,7 +118,7 @@ TriangleMesh join_surfaces(const std::vector<const PreparedSurface*>& parts)
   for (const PreparedSurface* part : parts)
     box.extend(part->box());
 
-  // winding numbers of each surface at points spread over the box
+  // Winding numbers of each surface at points spread over the box.
   constexpr int points = 400;
   std::vector<std::vector<double>> winding(parts.size(), std::vector<double>(points));
   for (int i = 0; i < points; ++i)
@@ -128,8 +128,8 @@ TriangleMesh join_surfaces(const std::vector<const PreparedSurface*>& parts)
       winding[s][i] = parts[s]->tree().winding_number(p);
   }
 
-  // The surfaces may be oriented either way. Take the combination whose sums of winding numbers are nearest to whole
-  // numbers, and flip all surfaces if these sums are negative.
+  // The surfaces may be oriented either way. The combination is chosen whose sums of winding numbers are nearest to
+  // whole numbers. If these sums are negative, all surfaces are flipped.
   constexpr std::size_t most_combined_parts = 12;
   const std::size_t combinations = parts.size() > most_combined_parts ? 1 : std::size_t{ 1 } << (parts.size() - 1);
   const auto is_flipped = [](std::size_t combination, std::size_t part)

@@ -21,8 +21,9 @@ public:
   const Box& box() const { return box_; }
   bool closed() const { return rim_.empty(); }
 
-  /// Upper bound on how much the winding number changes within `radius` of p if the surface is not crossed: the
-  /// gradient of an open surface's solid angle depends on its border alone (Biot-Savart). 0 for a closed surface.
+  /// Upper bound on how much the winding number changes within `radius` of p if the surface is not crossed. The bound
+  /// follows from the border alone, as the gradient of an open surface's solid angle does (Biot-Savart). 0 for a closed
+  /// surface.
   double winding_variation(const Vector3d& p, double radius) const;
 
   /// Whether p is closer than `distance` [m] to the border of the surface.
@@ -55,7 +56,7 @@ PreparedSurfaces prepare_surfaces(const Scene& scene, BakeMonitor& monitor);
 const PreparedSurface& named_surface(const PreparedSurfaces& surfaces, const std::string& name,
                                      const std::string& place);
 
-/// Joins surfaces that together enclose a volume. Flips them such that the sums of their winding numbers are as near to
+/// Joins surfaces that together enclose a volume. Flips them so that the sums of their winding numbers are as near to
 /// whole numbers as possible.
 TriangleMesh join_surfaces(const std::vector<const PreparedSurface*>& parts);
 
@@ -72,9 +73,9 @@ struct LoadedSurface
 };
 
 /// Makes or reads a surface and makes the repairs that do not change its shape. Messages give positions in the length
-/// unit `unit` [m]. Throws Error, with position and remedy, if no triangle has an area, if an odd number of
-/// triangles meet at an edge, if a closed surface encloses nothing, or if a surface passes through itself. Holes are
-/// allowed here; check_openings() refuses those that do harm.
+/// unit `unit` [m]. Throws Error, with position and remedy, if no triangle has an area, an odd number of triangles meet
+/// at an edge, a closed surface encloses nothing, or a surface passes through itself. Holes are allowed here;
+/// check_openings() refuses those that do harm.
 LoadedSurface load_surface(const Surface& surface, double unit);
 
 }  // namespace frontalis

@@ -58,7 +58,8 @@ TriangleMesh cut(TriangleMesh mesh, std::size_t axis, double limit, double sign)
     const auto found = crossings.insert({ { std::min(a, b), std::max(a, b) }, 0 });
     if (found.second)
     {
-      // interpolate from the lower vertex number, so that both triangles of an edge get bitwise the same point
+      // The point is interpolated from the lower vertex index, so that both triangles of an edge get bitwise the same
+      // point.
       const auto [p, q] = std::minmax(a, b);
       const double along = height(p) / (height(p) - height(q));
       const Vector3d from = vertex(mesh, p), to = vertex(mesh, q);
@@ -295,7 +296,7 @@ void add_sheet(TriangleMesh& mesh, std::int32_t n, std::int32_t m,
       const std::int32_t a = number(i, j), b = number(i + 1, j), c = number(i + 1, j + 1), d = number(i, j + 1);
       const double bd = (vertex(mesh, d) - vertex(mesh, b)).squaredNorm();
       const double ac = (vertex(mesh, c) - vertex(mesh, a)).squaredNorm();
-      // take the shorter diagonal; if both are equal, mirror the diagonals about the middle column
+      // The shorter diagonal is chosen. If both are equal, diagonals are mirrored about the middle column.
       if (std::abs(ac - bd) < 1e-9 * ac ? n % 2 == 0 && i < n / 2 : ac > bd)
       {
         mesh.triangles.push_back({ a, b, d });

@@ -20,7 +20,7 @@ inline std::array<Vector3d, 3> corners(const TriangleMesh& mesh, const Triangle&
 void append(TriangleMesh& mesh, const TriangleMesh& part, bool flipped = false);
 
 /// Edges along which the triangles do not run equally often in both directions (borders of holes, seams). Each edge has
-/// the direction of its surplus triangles and is repeated for each of them.
+/// the direction of its surplus triangles and occurs once for each of them.
 using Edges = std::vector<std::array<std::int32_t, 2>>;
 
 Edges unbalanced_edges(const TriangleMesh& mesh);

@@ -40,8 +40,8 @@ bool overlap(const std::array<Vector3d, 3>& corners, const Box& box)
 }
 
 /// Whether the line from p along `direction` passes to the left of the edge from a to b, seen against `direction`. The
-/// computation starts at the vertex with the lower number. So the two triangles at an edge, which run along it in
-/// opposite directions, get opposite answers even if the line meets the edge.
+/// computation starts at the vertex with the lower index. The two triangles at an edge, which run along it in opposite
+/// directions, therefore get opposite answers even if the line meets the edge.
 bool left_of(const Vector3d& direction, const Vector3d& p, const Vector3d& a, const Vector3d& b, std::int32_t number_a,
              std::int32_t number_b)
 {
@@ -50,8 +50,9 @@ bool left_of(const Vector3d& direction, const Vector3d& p, const Vector3d& a, co
   return (direction.dot(first.cross(second)) >= 0) == ordered;
 }
 
-/// A group of triangles is far from a point if the distance to its centre is at least this many times the distance from
-/// its centre to its farthest corner. The error of the winding number is about 1e-3 (winding_number_test).
+/// A group of triangles is far from a point if the distance of the point from the group's centre is at least this many
+/// times the distance of the group's farthest corner from the centre. The error of the winding number is then about
+/// 1e-3 (winding_number_test).
 constexpr double far_ratio = 2.3;
 
 }  // namespace
@@ -96,7 +97,8 @@ std::int32_t TriangleTree::build(std::int32_t begin, std::int32_t end, const std
   }
   if (end - begin > leaf_size)
   {
-    // halve along the longest side; equal centroids are ordered by index, so that the tree is reproducible
+    // Groups are halved along their longest side. Equal centroids are ordered by index, so that the tree is
+    // reproducible.
     Eigen::Index axis = 0;
     centres.sizes().maxCoeff(&axis);
     const std::int32_t middle = (begin + end) / 2;
@@ -200,7 +202,7 @@ ClosestPoint TriangleTree::closest(const Vector3d& p, double bound, std::int32_t
       const double x = p[static_cast<Eigen::Index>(a)];
       away += (four.lower[a] - x).max(x - four.upper[a]).max(0).square();
     }
-    // the nearest child comes on top of the stack
+    // The nearest child is put on top of the stack.
     const int first = top;
     for (int c = 0; c < 4; ++c)
     {
@@ -265,7 +267,7 @@ double winding_of_triangle(const Vector3d& p, const Vector3d& a, const Vector3d&
   const double lu = u.norm(), lv = v.norm(), lw = w.norm();
   const double numerator = u.dot(v.cross(w));
   const double denominator = lu * lv * lw + u.dot(v) * lw + v.dot(w) * lu + w.dot(u) * lv;
-  // the solid angle is 0 for a point in the plane of the triangle
+  // The solid angle is 0 for a point in the plane of the triangle.
   if (numerator == 0)
     return 0;
   return std::atan2(numerator, denominator) / (2 * pi);
@@ -291,7 +293,7 @@ TriangleTree::Expansion TriangleTree::expand(const Node& range) const
     const Vector3d normal = 0.5 * (b - a).cross(c - a);
     const Vector3d middle = (1.0 / 3) * (a + b + c);
     node.dipole += normal;
-    // mean over the triangle of the product of the offsets j and k from the centre
+    // Mean over the triangle of the product of the offsets j and k from the centre.
     const auto moment = [&](std::size_t j, std::size_t k)
     { return (a[j] * a[k] + b[j] * b[k] + c[j] * c[k] + 9 * middle[j] * middle[k]) / 12; };
     const double moments[6] = { moment(0, 0), moment(1, 1), moment(2, 2), moment(0, 1), moment(1, 2), moment(2, 0) };
@@ -321,7 +323,8 @@ double TriangleTree::far_field(const Expansion& node, const Vector3d& p)
                      f[6] * r[0] + f[7] * r[1] + f[8] * r[2] };
   sum += s3 * trace - 3 * s5 * r.dot(fr);
 
-  // half of second_ijk times d2/dxj dxk of r_i / r^3 = -3 (d_ij r_k + d_ik r_j + d_jk r_i) / r^5 + 15 r_i r_j r_k / r^7
+  // Half of second_ijk times the derivative d2/dxj dxk of r_i / r^3, which is -3 (d_ij r_k + d_ik r_j + d_jk r_i) / r^5
+  // + 15 r_i r_j r_k / r^7.
   double diagonal = 0, cubic = 0;
   for (std::size_t i = 0; i < 3; ++i)
   {

@@ -16,8 +16,8 @@ struct ClosestPoint
 
 /// Bounding-volume hierarchy over a mesh's triangles for closest points, overlaps with boxes, and the generalised
 /// winding number by the method of Barill et al., Fast winding numbers for soups and clouds, ACM Trans. Graph.
-/// 37(4):43, 2018. Far groups of triangles contribute by the Taylor series of the dipole potential about their area
-/// centroid (up to the kernel's second derivative), near triangles by their exact solid angles (van Oosterom & Strackee
+/// 37(4):43, 2018. Far groups of triangles contribute the Taylor series of the dipole potential about their area
+/// centroid (up to the kernel's second derivative), near triangles their exact solid angles (van Oosterom & Strackee
 /// 1983). CGAL's AABB tree has no winding numbers and takes 1.3 to 2.3 times as long to find closest points.
 class TriangleTree
 {
@@ -57,8 +57,8 @@ private:
     std::array<double, 18> second{};  ///< second moments, with offsets j and k: xx, yy, zz, xy, yz, zx
   };
 
-  /// Walks down from the root to the children of nodes for which enter(node index) is true, and calls leaf(index in
-  /// order_) for each triangle reached, until a call returns true. Returns whether one did.
+  /// Walks from the root to the children of nodes for which enter(node index) is true, and calls leaf(index in order_)
+  /// for each triangle that it reaches, until a call returns true. Returns whether a call did.
   template <class Enter, class Leaf>
   bool visit(const Enter& enter, const Leaf& leaf) const
   {
@@ -88,8 +88,9 @@ private:
   /// Four boxes that are compared with a point at once: boxes of the grandchildren of a node, or of a leaf's triangles.
   struct Four
   {
-    std::array<Eigen::Array4d, 3> lower, upper;  ///< corners of the boxes; an unused one is infinitely far
-    std::array<std::int32_t, 4> below{};         ///< index of the Four in each box; ~index in order_ of a triangle
+    std::array<Eigen::Array4d, 3> lower, upper;  ///< corners of the boxes; an unused box is infinitely far
+    /// for each box the index of the next Four or, for a triangle, ~(index in order_)
+    std::array<std::int32_t, 4> below{};
   };
   void add_four(std::int32_t node);  ///< appends the boxes below a node
 

@@ -17,18 +17,18 @@ double smooth_step(double x)
   return t * t * t * (t * (6 * t - 15) + 10);
 }
 
-/// The generated forehead as a map from (s, z, depth) to space. s is the arc length from the midline, positive to the
-/// subject's left [m], z the height above the sellion [m], depth a proportion of the soft tissue: 0 at the skin, 1 at
-/// the bone.
+/// The generated forehead as a map from (s, z, depth) to space. s is the arc length from the midline [m], positive to
+/// the subject's left, z the height above the sellion [m], depth a fraction of the soft tissue: 0 at the skin, 1 at the
+/// bone.
 class ForeheadMap
 {
 public:
   explicit ForeheadMap(const ForeheadDimensions& dimensions)
       : dimensions_(dimensions),
-        // the radius of curvature of an ellipse at its front is half_breadth^2 / depth_axis
+        // The radius of curvature of an ellipse at its front is half_breadth^2 / depth_axis.
         depth_axis_(dimensions.half_breadth * dimensions.half_breadth / dimensions.front_radius)
   {
-    // the normal from bone to skin is not horizontal: find by iteration the height of the bone below the sellion
+    // The normal from bone to skin is not horizontal. The iteration finds the height of the bone below the sellion.
     double z = 0;
     for (int i = 0; i < 20; ++i)
       z -= at(0, z, 0)[2];
@@ -58,7 +58,7 @@ public:
   {
     const double arc = std::abs(s);
     const double brow = dimensions_.brow_height;
-    // height of the nasal root, plus the rise to the orbital rim, minus the fall towards the cheek bone
+    // Height of the nasal root, plus the rise to the orbital rim, minus the fall towards the cheek bone.
     return -2e-3 + (0.55 * brow + 2e-3) * smooth_step((arc - 4e-3) / 20e-3) -
            0.35 * brow * smooth_step((arc - 42e-3) / 30e-3);
   }
@@ -76,11 +76,11 @@ private:
     const double angle = s / d.half_breadth;
     const double lean = std::tan(5 * pi / 180);
     const double above = z - d.brow_height;
-    // the profile leans and curves backwards above the brow and is straight below
+    // The profile leans and curves backwards above the brow and is straight below.
     const double setback = above > 0 ? lean * above + above * above / (2 * d.profile_radius) : lean * above;
 
-    // the relief along the horizontal normal: the brow ridge, highest above the medial half of the orbit; the glabella;
-    // the nasal root; the temples
+    // The relief along the horizontal normal: the brow ridge, which is highest above the medial half of the orbit; the
+    // glabella; the nasal root; the temples.
     const double arc = std::abs(s);
     const double ridge = d.ridge * bell(above, 9e-3) * (0.45 + 0.55 * bell(arc - 22e-3, 18e-3)) *
                          (1 - smooth_step((arc - 45e-3) / 25e-3));
@@ -146,7 +146,7 @@ Sheet frontalis(const ForeheadMap& map, double side)
   {
     const double inner = frontalis_inner(b);
     const double s = side > 0 ? inner + a * frontalis_width : -inner - (1 - a) * frontalis_width;
-    // the insertion follows the brow: lower at its lateral end
+    // The insertion follows the brow, which is lower at its lateral end.
     const double out = (std::abs(s) - inner) / frontalis_width;
     const double low = d.brow_height - 2e-3 - 3e-3 * out * out;
     return std::array<double, 2>{ s, mix(low, d.brow_height + 2.0 / 3 * d.height - 6e-3 * out * out, b) };
@@ -163,7 +163,7 @@ Sheet corrugator(const ForeheadMap& map, double side)
   const double length = 35e-3;
   const auto place = [&d, side, angle, length](double a, double b)
   {
-    // along: 0 at the origin (medial), 1 at the insertion (lateral); the muscle fans out
+    // along: 0 at the origin (medial), 1 at the insertion (lateral). The muscle fans out.
     const double along = side > 0 ? a : 1 - a;
     const double across = (b - 0.5) * mix(8e-3, 12e-3, along);
     const double s = 4e-3 + along * length * std::cos(angle) - across * std::sin(angle);
@@ -194,12 +194,12 @@ Sheet galea(const ForeheadMap& map)
     const double half = std::min(52e-3, map.half_width());
     const double s = mix(-half, half, a);
     const double arc = std::abs(s);
-    // the lower edge follows the upper edge of the frontales and extends down into the gap between them
+    // The lower edge follows the upper edge of the frontales and extends down into the gap between them.
     const double top = d.brow_height + 2.0 / 3 * d.height - 3e-3;
     const double gap = std::max(0.0, 1 - arc / 12e-3);
     const double outer = std::max(0.0, (arc - 12e-3) / frontalis_width);
     const double low = top - 0.4 * d.height * gap * gap * (3 - 2 * gap) - 6e-3 * std::min(1.0, outer * outer);
-    // the sheet extends 1 mm beyond the upper edge of the tissue, so that no gap is left there
+    // The sheet extends 1 mm beyond the upper edge of the tissue, so that no gap is left there.
     return std::array<double, 2>{ s, mix(low, map.upper_edge(s) + 1e-3, b) };
   };
   const auto depth = [](double, double) { return 0.55; };
@@ -270,7 +270,7 @@ struct SkinGrid
   SkinGrid(const ForeheadMap& forehead, double edge, double margin) : map(forehead), beyond(margin)
   {
     const ForeheadDimensions& d = map.dimensions();
-    // an even number of columns, so that one runs along the midline
+    // The number of columns is even, so that a line of points runs along the midline.
     across = 2 * std::max(2, static_cast<std::int32_t>(std::ceil((0.5 * d.width + beyond) / edge)));
     up = std::max(4, static_cast<std::int32_t>(std::ceil((d.height + 0.6 * d.brow_height + 2 * beyond) / edge)));
     through = std::max(1, static_cast<std::int32_t>(std::ceil(0.5 * (d.brow_thickness + d.hairline_thickness) / edge)));

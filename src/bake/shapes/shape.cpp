@@ -32,14 +32,14 @@ void add_cube(TriangleMesh& mesh, const std::array<std::int32_t, 3>& n,
     const int b = (a + 1) % 3, c = (a + 2) % 3;
     for (const int side : { -1, 1 })
     {
-      // the normal of (b, c) points along +a; exchanged, the two give the outward normal of the lower side
+      // The normal of (b, c) points along +a. Exchanging the two gives the outward normal of the lower side.
       const int first = side > 0 ? b : c, second = side > 0 ? c : b;
       add_sheet(mesh, n[first], n[second],
                 [&](std::int32_t i, std::int32_t j)
                 {
                   Vector3d p;
                   p[a] = side;
-                  // exactly 1 at the end, so that adjacent sides have equal vertices at their common edge
+                  // The value is exactly 1 at the end, so that adjacent sides have equal vertices at their common edge.
                   p[first] = i == n[first] ? 1 : -1 + 2.0 * i / n[first];
                   p[second] = j == n[second] ? 1 : -1 + 2.0 * j / n[second];
                   return place(p);
@@ -61,7 +61,7 @@ TriangleMesh ellipsoid(const Shape& shape, const Vector3d& radii, double edge)
 {
   TriangleMesh mesh;
   const std::int32_t n = parts(0.5 * pi * radii.maxCoeff(), edge, 3);
-  // space the points by equal angles, so that the squares on the sphere have similar sizes
+  // The points are spaced by equal angles, so that the squares on the sphere have similar sizes.
   const auto place = [&](const Vector3d& p) -> Vector3d
   {
     const Vector3d q = (pi / 4 * p).array().tan().matrix().normalized();

@@ -7,7 +7,8 @@ namespace frontalis
 namespace
 {
 
-/// Finds the first node of a group with an entry, and gives this entry to all its nodes. Returns whether there is one.
+/// Finds the first node of a group that has an entry, and gives this entry to all nodes of the group. Returns false if
+/// no node has an entry.
 template <class Entry>
 bool share(const std::vector<std::int32_t>& group, std::map<std::int32_t, Entry>& entries)
 {
@@ -45,7 +46,7 @@ void put(const std::map<std::int32_t, Entry>& entries, std::vector<Entry>& list)
 
 void settle_joints(Model& model)
 {
-  std::map<std::int32_t, std::vector<std::int32_t>> groups;  // joined nodes, by their master
+  std::map<std::int32_t, std::vector<std::int32_t>> groups;  // nodes joined to each master
   std::map<std::int32_t, std::int32_t> master;
   for (const Model::Joint& joint : model.joints)
   {

@@ -16,7 +16,7 @@ namespace
 
 bool attaches(const Scene& scene, const SceneConstraint& constraint)
 {
-  // a constraint with a `within` of its own keeps its nodes instead of attaching tissue
+  // A constraint with a `within` of its own keeps its nodes instead of attaching tissue.
   return scene.accuracy.boundary == "true" && constraint.restricts_nodes() && constraint.within < 0;
 }
 
@@ -31,8 +31,8 @@ struct Candidate
 };
 
 /// Finds whether the tissue around a node continues in a voxel near it, so that the node may follow a node of that
-/// voxel. In a model with flaps, voxels at the same place or side by side may belong to the two sides of a gap. Then
-/// nodes do not connect them, or only by a long way around the gap.
+/// voxel. In a model with flaps, voxels at the same place or side by side may belong to the two sides of a gap. Nodes
+/// then do not connect them, or only around the end of the gap.
 class ContinuousTissue
 {
 public:
@@ -135,7 +135,7 @@ public:
     mark(model.rigid);
     mark(model.sliding);
     mark(model.prescribed);
-    // a restricted node also restricts the nodes joined to it: see settle_joints()
+    // A restricted node also restricts the nodes joined to it: see settle_joints().
     std::vector<bool> any(model.nodes.size(), false);
     for (std::size_t n = 0; n < any.size(); ++n)
       if (restricted_[n])
@@ -150,7 +150,7 @@ public:
   bool find(Candidate& candidate)
   {
     tissue_.begin_at(candidate.node.node);
-    // move the foot a little inwards, because the node may be on the wall of a gap
+    // The foot is moved a little inwards, because the node may be on the wall of a gap.
     const Vector3d foot = rest(candidate.node.node) - candidate.distance * candidate.normal + 1e-3 * tissue_.inwards();
     for (double height = 1; height < 3.1; height += 0.25)
     {
@@ -184,7 +184,7 @@ private:
 
   Vector3d rest(std::int32_t node) const { return to_vector(rest_position(model_, node)); }
 
-  /// Takes a master from the nearest voxel with free corners within 2.5 edges of a point above the surface.
+  /// Takes a master from the nearest voxel whose corners are free, within 2.5 edges of a point above the surface.
   bool find_beside(const Vector3d& above, Candidate& candidate)
   {
     constexpr std::int32_t reach = 3;
@@ -221,7 +221,7 @@ private:
     const std::int32_t master = *std::min_element(
         corners.begin(), corners.end(),
         [&](std::int32_t a, std::int32_t b) { return (rest(a) - y).squaredNorm() < (rest(b) - y).squaredNorm(); });
-    // a free corner is close to the surface only where a crop ends the constraint
+    // A free corner is close to the surface only where a crop ends the constraint.
     const double height = distance(candidate, master);
     if (!(height >= 0.5 * edge_))
       return false;
@@ -305,7 +305,8 @@ private:
     return nearest;
   }
 
-  /// The side of a surface with tissue, +1 or -1; if both have tissue, the side of a node at the distance `outwards`.
+  /// The side of a surface with tissue, +1 or -1. If both sides have tissue: the side of a node at the distance
+  /// `outwards`.
   double side_at(const PreparedSurface& surface, double outwards)
   {
     const auto known = side_.find(&surface);
@@ -335,13 +336,13 @@ std::vector<const PreparedSurface*> attaching_surfaces(const Scene& scene, const
 void attach_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,
                   BakeMonitor& monitor)
 {
-  // without the effect, nodes near bones stay rigid or slide at their own distance
+  // Without the effect, nodes near bones stay rigid or slide at their own distance.
   if (scene.accuracy.boundary != "true" || scene.switched_off.has(Effect::attachment))
     return;
   CandidateFinder candidates(scene, surfaces, frame, model);
   MasterFinder masters(frame, model);
   std::size_t held = 0, freed = 0;
-  // attaches nodes of a list, and keeps the others in the list
+  // Attaches nodes of a list, and keeps the others in the list.
   const auto attach = [&](auto& list)
   {
     std::size_t kept = 0;

@@ -15,11 +15,12 @@ namespace
 constexpr std::size_t grain = 1024;
 constexpr double farthest_landmark = 20e-3;  // largest distance from the skin [m]
 
-// Halving leaves edges of three quarters of the longest on average: six of them per wavelength.
+// Number of longest edges per wavelength of fine lines. Halving leaves edges of three quarters of the longest on
+// average, so that a wavelength has six edges.
 constexpr double edges_per_line = 4.5;
-constexpr double vertices_per_edge_area = 3.2;  // vertices on the square of the longest edge, as measured
+constexpr double vertices_per_edge_area = 3.2;  // measured number of vertices per square of the longest edge
 constexpr double most_vertices = 2e6;
-constexpr double coarsening = 0.5;  // growth of edges with the distance from where lines are wanted
+constexpr double coarsening = 0.5;  // growth of edges per distance from the region in which lines are wanted
 
 /// Finds the voxel that moves a point: the one that contains it, or the nearest one within the extrapolation distance.
 class PointBinder
@@ -30,8 +31,8 @@ public:
   {
   }
 
-  /// Returns false if no voxel is near enough. Coordinates in a voxel run from 0 to 1 along each of its edges.
-  /// `inwards`: unit vector into the tissue, which tells on which side of a gap the point is.
+  /// Binds a point. Returns false if no voxel is near enough. Coordinates in a voxel run from 0 to 1 along each of its
+  /// edges. `inwards`: unit vector into the tissue, which decides on which side of a gap the point is.
   bool bind(const Vector3d& local, const Vector3d& inwards, std::int32_t& voxel,
             std::array<float, 3>& coordinates) const
   {
@@ -60,9 +61,9 @@ private:
       coordinates[a] = static_cast<float>(local[a] / model_.spacing[a] - place[a]);
   }
 
-  /// Searches cubic shells of cells around a cell, until no further shell can hold a nearer voxel. Voxels on the side
-  /// to which the surface's normal points are taken only if there are no others: they are the tissue beyond a gap, such
-  /// as the other lip.
+  /// Searches cubic shells of cells around a cell, until no further shell can contain a nearer voxel. Voxels on the
+  /// side to which the surface's normal points are taken only if there are no others, because they are the tissue
+  /// beyond a gap, such as the other lip.
   std::int32_t nearest(const Vector3d& local, const Vector3d& inwards, const VoxelPlace& cell) const
   {
     const Vector3d spacing = to_vector(model_.spacing);

@@ -42,7 +42,7 @@ void Gaps::assign_flaps(Voxels& voxels) const
     joined.insert(tissue.joined.begin(), tissue.joined.end());
   VoxelIndex all(voxels.place, grid_.size);
 
-  // the points of the grid around all tissue at gaps and beside them
+  // The points of the grid around all tissue at gaps and next to them.
   std::map<VoxelPlace, GridPoint> points;
   for (const Tissue& tissue : tissue_)
     for (int c = 0; c < 8; ++c)
@@ -156,7 +156,7 @@ void Gaps::assign_flaps(Voxels& voxels) const
       ++f;
     if (f < 4)
       continue;
-    // the joined voxels extend around the end of a gap and meet themselves: choose a flap for each voxel
+    // The joined voxels extend around the end of a gap and meet themselves, so that each voxel gets a flap of its own.
     for (const std::uint32_t voxel : list)
     {
       for (f = 0; f < most_flaps && !put({ voxel }, f); ++f)
@@ -167,7 +167,7 @@ void Gaps::assign_flaps(Voxels& voxels) const
     }
   }
 
-  // join a voxel in a flap, at each of its corners, to the voxel of its group in the lowest flap
+  // Joins a voxel in a flap, at each of its corners, to the voxel of its group in the lowest flap.
   for (const auto& [at, point] : points)
     for (std::size_t b = 0; b < point.voxel.size(); ++b)
     {

@@ -7,7 +7,7 @@ namespace frontalis
 namespace
 {
 
-constexpr double widest_gap = 2.2;  // [voxel edges]; wider gaps leave a layer of voxels empty
+constexpr double widest_gap = 2.2;  // in voxel edges; wider gaps leave a layer of voxels empty
 
 /// Calls call(point) for points of a triangle at distances of at most `spacing`.
 template <class Call>
@@ -200,7 +200,7 @@ std::vector<char> GapWalls::cells_with_gaps(const Volumes& volumes, const Grid& 
   for (std::size_t w = thin_gaps ? 0 : bodies_; w < walls_.size(); ++w)
   {
     const TriangleMesh& mesh = walls_[w]->mesh();
-    // collect marks per triangle and join them afterwards, because threads must not share cells
+    // Marks are collected per triangle and joined afterwards, because threads must not share cells.
     std::vector<std::vector<Vector3d>> marks(mesh.triangles.size());
     parallel_for(
         monitor, mesh.triangles.size(), 256,

@@ -18,19 +18,20 @@ public:
   /// Throws Error if more than 64 surfaces bound the tissue.
   GapWalls(const Volumes& volumes, const PreparedSurfaces& surfaces);
 
-  /// For each cell of the grid, in the order of places, whether a slit passes through it or, with `thin_gaps`, a gap
-  /// beside a wall, less than 2.2 voxel edges wide.
+  /// For each cell of the grid, in the order of places, whether a slit passes through it. With `thin_gaps`, also
+  /// whether it has a gap next to a wall that is less than 2.2 voxel edges wide.
   std::vector<char> cells_with_gaps(const Volumes& volumes, const Grid& grid, bool thin_gaps,
                                     BakeMonitor& monitor) const;
 
   std::vector<Piece> pieces_in(const Box& box) const;
   /// The bodies that enclose a point, one bit each.
   std::uint64_t enclosing(const Vector3d& p) const;
-  /// The bodies that enclose a point p of a box, found from those around the box's centre and the pieces in the box.
+  /// The bodies that enclose a point p of a box, found from those that enclose the box's centre and from the pieces in
+  /// the box.
   std::uint64_t enclosing(const Vector3d& p, const Vector3d& centre, std::uint64_t at_centre,
                           const std::vector<Piece>& pieces) const;
-  /// Whether the line from p to q is cut by a slit, or leaves the tissue and enters it again. `enclosing`: bodies
-  /// around p; `pieces`: at least the pieces between the points.
+  /// Whether the line from p to q is cut by a slit, or leaves the tissue and enters it again. `enclosing`: bodies that
+  /// enclose p; `pieces`: at least the pieces between the points.
   bool part(const Vector3d& p, std::uint64_t enclosing, const Vector3d& q, const std::vector<Piece>& pieces) const
   {
     return way_out(p, enclosing, q, pieces) == Way::and_in;
@@ -56,7 +57,7 @@ private:
     std::uint64_t closed_by = 0, inside = 0, outside = 0;
   };
   bool is_tissue(std::uint64_t enclosing) const;
-  /// Width of the gap that begins at p, on a wall, along the unit vector `away` [m]; 0: there is none.
+  /// Width [m] of the gap that begins at the point p of a wall, along the unit vector `away`; 0: there is no gap.
   double gap_at(const Volumes& volumes, const Vector3d& p, const Vector3d& away, double widest) const;
 
   std::vector<const PreparedSurface*> walls_;  ///< bodies, then slits

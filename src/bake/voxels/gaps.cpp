@@ -14,7 +14,7 @@ namespace
 {
 
 constexpr int points_per_edge = 6;
-constexpr double reach = 0.45;  // largest distance of points that are tested for a joint [voxel edges]
+constexpr double reach = 0.45;  // largest distance of points that are tested for a joint, in voxel edges
 
 using Sets = boost::disjoint_sets_with_storage<>;
 
@@ -142,7 +142,7 @@ void Gaps::find_parts(Tissue& tissue) const
       if ((tissue.points[i] - tissue.points[j]).squaredNorm() < near * near && sets.find_set(i) != sets.find_set(j) &&
           !walls_->part(tissue.points[i], tissue.enclosing[i], tissue.points[j], tissue.pieces))
         sets.union_set(i, j);
-  // by the number of the scene's samples, and where that is equal by the first point
+  // Sorts by the number of the scene's samples and, where that is equal, by the first point.
   const int all = samples_ * samples_ * samples_;
   std::map<std::size_t, int> samples_in;
   for (std::size_t i = 0; i < count; ++i)
@@ -197,7 +197,7 @@ void Gaps::join_to(Tissue& tissue, const Tissue& other) const
       }
   if (any)
     return;
-  // with so little tissue no points are close: test the nearest two
+  // With so little tissue no points are close, so that the nearest two are tested.
   double best = std::numeric_limits<double>::max();
   std::pair<std::size_t, std::size_t> nearest;
   for (std::size_t i = 0; i < tissue.points.size(); ++i)
@@ -306,7 +306,7 @@ bool Gaps::extends_to(const Vector3d& centre, int flap, const Vector3d& point) c
   constexpr std::size_t most_looks = 8;
   const auto looks = static_cast<std::ptrdiff_t>(std::min(near.size(), most_looks));
   std::partial_sort(near.begin(), near.begin() + looks, near.end());
-  // the surface of a bone and the limit of the tissue may be a little apart
+  // The surface of a bone and the limit of the tissue may be a little apart.
   const double tolerance = 0.1 * grid_.spacing.minCoeff();
   return std::any_of(near.begin(), near.begin() + looks,
                      [&](const auto& entry)

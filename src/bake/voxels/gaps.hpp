@@ -21,11 +21,11 @@ public:
   Gaps(const Scene& scene, const Volumes& volumes, const PreparedSurfaces& surfaces, const Grid& grid);
 
   /// Divides the voxels at gaps and sets their flaps and joints. Voxels that are replaced get flap -1. A part that
-  /// fills less than fill_min of a voxel, or has no sample, is counted to the largest part of that voxel. Changes
-  /// nothing if there is no gap.
+  /// fills less than fill_min of a voxel, or has no sample, is added to the largest part of that voxel. Changes nothing
+  /// if there is no gap.
   void part(Voxels& voxels, BakeMonitor& monitor);
 
-  /// The voxel whose tissue contains a point near a gap, or is nearest to it.
+  /// The voxel whose tissue contains a point near a gap, or is nearest to the point.
   struct Owner
   {
     Vector3d centre{ 0, 0, 0 };  ///< centre of the voxel, scene coordinates [m]
@@ -47,14 +47,14 @@ private:
     std::vector<int> sample;               ///< number of each point in the sequence of samples
     std::vector<std::uint64_t> enclosing;  ///< bodies around each point
     std::vector<int> part;                 ///< part of each point; -1: a part that is not kept
-    std::vector<GapWalls::Piece> pieces;   ///< pieces of walls in and around the voxel
+    std::vector<GapWalls::Piece> pieces;   ///< pieces of walls in and near the voxel
     std::vector<std::uint32_t> copies;     ///< voxels that represent the parts
     std::vector<std::uint64_t> joined;     ///< joined pairs of a voxel of this tissue and one of a neighbour
   };
   enum class Level : char
   {
     far,     ///< no neighbour is at a gap
-    beside,  ///< neighbour of a voxel at a gap; has one part
+    beside,  ///< the cell is a neighbour of a voxel at a gap and has one part
     at_gap
   };
 

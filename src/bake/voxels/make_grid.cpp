@@ -10,8 +10,8 @@ namespace
 {
 
 constexpr double least_voxels = 8;
-constexpr double most_voxels = 2.5e8;  // eight node numbers per voxel need indices below 2^31
-// The measured peak is 230 to 270 bytes per voxel for about a million voxels; the rest is for scenes with more muscles.
+constexpr double most_voxels = 2.5e8;  // eight node indices per voxel must be below 2^31
+// The measured peak is 230 to 270 bytes per voxel for about a million voxels. The rest is for scenes with more muscles.
 constexpr double bytes_per_voxel = 400;
 constexpr double bytes_per_cell = 0.15;
 constexpr int samples = 2000;
@@ -31,7 +31,8 @@ double estimated_voxels(const Volumes& volumes, const Box& box, double cells)
   return std::max(1.0, static_cast<double>(inside)) / samples * cells;
 }
 
-/// The number that follows the word `after` in a file, or its first number if `after` is empty. Infinite if missing.
+/// The number that follows the word `after` in a file, or the file's first number if `after` is empty. Infinite if
+/// missing.
 double number_in(const std::string& path, const std::string& after)
 {
   std::ifstream file(path);
@@ -102,7 +103,7 @@ Grid make_grid(const Scene& scene, const Volumes& volumes)
     throw failure("{}{} {} of {}; at least {} are needed{}", spans, number_text(count), count == 1 ? "voxel" : "voxels",
                   edges_text(spacing), least_voxels, advice);
 
-  // cells along an axis are counted with 32 bits, however few of them are tissue
+  // Cells along an axis are counted with 32 bits, however few of them are tissue.
   const bool absurd = cells.maxCoeff() > 1e9 || count > 1e15;
   const double voxels = absurd ? count : estimated_voxels(volumes, box, count);
   const double bytes = bytes_per_voxel * voxels + bytes_per_cell * count;

@@ -5,7 +5,7 @@ namespace frontalis
 namespace
 {
 
-constexpr double points_per_muscle = 10000;  // approximate number of points of the integration
+constexpr double points_per_muscle = 10000;  // approximate number of points of integration
 
 /// Appends the coordinates x [m] at which the line along x through (y, z) enters (+1) or leaves (-1) a mesh.
 void add_crossings(const TriangleTree& tree, const Box& box, double y, double z, double step,
@@ -32,7 +32,7 @@ void add_crossings(const TriangleTree& tree, const Box& box, double y, double z,
   }
 }
 
-/// Tells whether a point of a muscle lies in the tissue and within the muscle's limits, or the condition that fails.
+/// Tells whether a point of a muscle lies in the tissue and within the muscle's limits, or which condition fails.
 Membership in_tissue(const Volumes& volumes, const Volumes::Entry& muscle, const Vector3d& p)
 {
   Membership best = Membership::cropped;
@@ -82,7 +82,7 @@ void measure(const Volumes& volumes, const Volumes::Entry& entry, BakeReport::Mu
       for (const std::size_t b : entry.inside)
         add_crossings(volumes.body(b).tree(), box, y, z, step, crossings);
       std::sort(crossings.begin(), crossings.end());
-      // overlapping bodies count once: from the entry into the first of them to the exit from the last
+      // Overlapping bodies count once: from the entry into the first of them to the exit from the last.
       double from = 0;
       int bodies = 0;
       for (const auto& [x, change] : crossings)

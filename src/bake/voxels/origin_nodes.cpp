@@ -5,7 +5,7 @@ namespace frontalis
 namespace
 {
 
-constexpr double end_share = 0.15;  // length of a muscle's end over that of its fibres
+constexpr double end_share = 0.15;  // length of a muscle's end divided by that of its fibres
 
 }  // namespace
 
@@ -34,7 +34,7 @@ std::vector<std::size_t> origin_nodes(std::size_t muscle, const MuscleFibres& fi
           if (near[node])
             ends[end].push_back(node);
         }
-  // compare proportions, not numbers: the other end may be wider and so have more nodes near the bone
+  // Fractions are compared, not numbers, because the other end may be wider and so have more nodes near the bone.
   const auto share = [&](int end) { return static_cast<double>(ends[end].size()) / corners[end]; };
   return share(0) >= share(1) ? ends[0] : ends[1];
 }

@@ -15,10 +15,10 @@ namespace
 // Distance from a triangle, on both sides, at which tissue is looked for, in longest voxel edges.
 constexpr double search_distance = 0.75;
 
-// Least magnitude of area_behind() of a surface that is a boundary of the tissue.
+// Smallest magnitude of area_behind() of a surface that is a boundary of the tissue.
 constexpr double least_agreement = 0.2;
 
-// The area with tissue behind it minus the area with tissue in front of it, over the whole area.
+// The area with tissue behind it minus the area with tissue in front of it, divided by the whole area.
 double area_behind(const TriangleMesh& mesh, const LocalFrame& frame, const Model& model, const VoxelIndex& voxels)
 {
   const Vector3d spacing = to_vector(model.spacing);

@@ -14,14 +14,15 @@ namespace frontalis
 namespace
 {
 
-// Edge length of triangles over that of voxels. The energy of a bent plate is too large by 1 % at 1.2, 8 % at 0.8 and
-// 50 % at 0.5; longer edges resolve short wrinkles less well (doc/wrinkles.md).
+// Edge length of triangles divided by that of voxels. The energy of a bent plate is too large by 1 % at 1.2, 8 % at 0.8
+// and 50 % at 0.5. Longer edges resolve short wrinkles less well (doc/wrinkles.md).
 constexpr double edge_ratio = 1.2;
 
-// Largest distance of a vertex from its voxel in voxel edges. Large weights farther away would shorten the time step.
+// Largest distance of a vertex from its voxel, in voxel edges. Larger distances have large weights, which would shorten
+// the time step.
 constexpr double farthest = 1;
 
-// moves vertices against their normals
+// Moves vertices against their normals.
 void sink(TriangleMesh& mesh, double depth)
 {
   std::vector<Vector3d> normals(mesh.vertices.size(), Vector3d(0, 0, 0));
@@ -43,8 +44,8 @@ struct Plate
   std::size_t layers = 0;
   int material = 0;  // material of the top layer
   double thickness = 0;
-  // `stiffness` is the sum over the layers of Young's modulus times thickness. The other sums have as further factor
-  // the mean depth below the surface, the mean squared depth, or Poisson's ratio of the layer.
+  // `stiffness` is the sum over the layers of Young's modulus times thickness. In the terms of the other sums, this
+  // product is multiplied by the mean depth below the surface, the mean squared depth, or Poisson's ratio of the layer.
   double stiffness = 0, first = 0, second = 0, poisson = 0;
 
   void add(const Layer& layer, int index, const Material& of, double depth)
@@ -66,9 +67,9 @@ struct Plate
   }
   double neutral() const { return first / stiffness; }
 
-  // Replaces several layers by a homogeneous one with their membrane stiffness and their bending stiffness about the
-  // common neutral surface. As separate shells each layer would bend about its own middle, and a thin stiff one would
-  // fold in waves that no voxel resolves.
+  // Replaces several layers by a homogeneous one with their membrane stiffness, and with their bending stiffness about
+  // the common neutral surface. As separate shells each layer would bend about its own middle, and a thin stiff layer
+  // would fold in waves that no voxel resolves.
   void make_homogeneous(Model& model)
   {
     if (layers == 1)
@@ -125,7 +126,7 @@ void bind_shells(const Scene& scene, const PreparedSurfaces& surfaces, const Loc
     const Layer& layer = *plate.top;
     const std::string place = place_in_scene(scene, "layer", layer);
     const Region crop = scene.volumes[index_of(scene.volumes, layer.volume, place, "volume")].crop;
-    // take the part near the tissue, because triangles of the surface may be larger than the tissue
+    // Only the part near the tissue is used, because triangles of the surface may be larger than the tissue.
     Box tissue;
     for (const auto& corner : { Vector3d(0, 0, 0), Vector3d(model.size[0], model.size[1], model.size[2]) })
       tissue.extend(frame.grid_point(model, corner[0], corner[1], corner[2]));

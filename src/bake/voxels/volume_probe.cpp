@@ -9,8 +9,8 @@ namespace
 {
 
 constexpr int samples = 2000;
-constexpr double clear_winding = 0.75;  // least winding number of a point that is clearly inside
-constexpr double most_unclear = 0.1;    // largest proportion of points inside that are not clearly inside
+constexpr double clear_winding = 0.75;  // smallest winding number of a point that is clearly inside
+constexpr double most_unclear = 0.1;    // largest fraction of points inside that are not clearly inside
 
 bool at_depth(const Volumes& volumes, const Volumes::Entry& entry, const Vector3d& p)
 {

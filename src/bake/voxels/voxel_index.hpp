@@ -14,7 +14,7 @@ namespace frontalis
 class VoxelIndex
 {
 public:
-  /// Indexes the voxels by the places where they rest; several may rest at one place.
+  /// Indexes the voxels by the places where they rest. Several voxels may rest at one place.
   explicit VoxelIndex(const Model& model) : VoxelIndex(model.voxels, model.size)
   {
     if (model.flaps.empty())
@@ -46,7 +46,7 @@ public:
     }
   }
 
-  /// Index of a voxel at `place`, the last one of several; -1 if there is none.
+  /// Index of a voxel at `place`, the last one if there are several; -1 if there is none.
   std::int32_t find(const std::array<std::int32_t, 3>& place) const
   {
     for (int a = 0; a < 3; ++a)

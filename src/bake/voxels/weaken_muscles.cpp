@@ -23,8 +23,9 @@ double share_kept(const SceneWeakness& weakness, const Vector3& place)
 
 }  // namespace
 
-// Lowers the weight of the muscle in weak voxels, so that backends need no code for weakness and models without it no
-// time. If the muscle has passive stress, the difference goes to another muscle, NAME_passive, which is never active.
+// Lowers the weight of the muscle in weak voxels, so that backends need no code for weakness, and models without it
+// take no extra time. If the muscle has passive stress, the difference is given to another muscle, NAME_passive, which
+// is never active.
 void weaken_muscles(const Scene& scene, const LocalFrame& frame, Model& model)
 {
   if (scene.weakness.empty())

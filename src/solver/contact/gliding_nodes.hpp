@@ -20,10 +20,9 @@ inline physics::Pose pose_of(const RigidTransform& from)
   return pose;
 }
 
-/// Sliding nodes whose surface moves with a bone or, in a model with friction, all sliding nodes. They are processed
-/// one by one in double precision, in the frame of the bone. Their tangent planes are found anew in each step, because
-/// a plane that is kept for several steps makes the surface's reaction jump when it is replaced, and friction follows
-/// the reaction.
+/// Sliding nodes whose surface moves with a bone, or all of a model with friction, processed one by one in double
+/// precision, in the frame of the bone. Their tangent planes are found in each step: if a plane were kept for several
+/// steps, its replacement would make the surface's reaction jump, which friction follows.
 template <class Real>
 class GlidingNodes
 {

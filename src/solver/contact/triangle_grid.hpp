@@ -20,7 +20,7 @@ public:
 
   void resize(std::size_t count);
   void list_arrays(ArrayList& list, Effect effect);
-  /// Sorts points into cells of edge `reach` [m].
+  /// Sorts points into cells with edges of the length `reach` [m].
   void build(double reach, const std::vector<Vector>& points);
   double reach() const { return edge_[0]; }
   /// Calls visit(index) for all points within the reach of p, and also for some farther points; may visit a point

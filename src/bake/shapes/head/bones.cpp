@@ -7,9 +7,10 @@ namespace frontalis
 namespace
 {
 
-// Distance, to the outside and the inside of a site, of two points whose values set the slope of the hull's field.
+// Distance of two further points from a site, one outside and one inside of it, whose values set the slope of the
+// hull's field.
 constexpr double slope_distance = 6e-3;  // [m]
-// Weight of smoothness: where sites contradict each other, the hull may miss a site by a few tenths of a millimetre.
+// Weight of smoothness. Where sites contradict each other, the hull may miss a site by a few tenths of a millimetre.
 constexpr double smoothing = 1e-3;
 
 }  // namespace
@@ -36,7 +37,7 @@ HeadBones::HeadBones(const HeadTemplate& head, const TriangleTree& skin, double 
     const ClosestPoint closest = skin.closest(to_vector(site.at));
     const auto [a, b, c] = corners(skin.mesh(), skin.mesh().triangles[closest.triangle]);
     Vector3d inward = to_vector(site.direction);
-    // sites with a direction are those of the teeth and the chin, whose depth does not follow the amount of tissue
+    // Sites with a direction are those of the teeth and the chin. Their depth does not follow the amount of tissue.
     const bool normal = inward.norm() < 0.5;
     if (normal)
       inward = -(b - a).cross(c - a).normalized();
@@ -51,7 +52,7 @@ HeadBones::HeadBones(const HeadTemplate& head, const TriangleTree& skin, double 
     add(bone - slope_distance * inward, slope_distance);
     add(bone + slope_distance * inward, -slope_distance);
   }
-  // biharmonic radial basis functions with a linear polynomial (Carr et al., SIGGRAPH 2001)
+  // Biharmonic radial basis functions with a linear polynomial (Carr et al., SIGGRAPH 2001).
   const auto n = static_cast<Eigen::Index>(centres_.size());
   Eigen::MatrixXd a = Eigen::MatrixXd::Zero(n + 4, n + 4);
   Eigen::VectorXd b = Eigen::VectorXd::Zero(n + 4);
@@ -88,7 +89,7 @@ double HeadBones::Bone::operator()(const Vector3d& p, double hull) const
 {
   using Kind = HeadTemplate::BoneStep::Kind;
   const Vector3d left{ p[0], std::abs(p[1]), p[2] };
-  double f = 1;  // [m], far from any bone
+  double f = 1;  // far from any bone [m]
   for (const Step& step : steps)
   {
     double shared = -1;

@@ -12,8 +12,8 @@
 namespace frontalis
 {
 
-/// Deforms the default head to given dimensions. The displacement is the most likely one of a smooth random
-/// field that gives each independent dimension its value (kriging, Matern 3/2 covariance, from distances of landmarks).
+/// Deforms the default head to given dimensions. The displacement is the most likely one of a smooth random field that
+/// gives each independent dimension its value (kriging with a Matern 3/2 covariance, from distances of landmarks).
 class HeadWarp
 {
 public:
@@ -29,14 +29,14 @@ private:
   std::vector<Vector3d> weights_;  ///< weights of the covariance with each place
 };
 
-/// Signed distance-like fields of the default head's bones [m], negative inside.
+/// Fields that approximate the signed distances from the default head's bones [m], negative inside.
 class HeadBones
 {
 public:
   /// Multiplies the depths of the template by `tissue`, except at the teeth and the chin.
   HeadBones(const HeadTemplate& head, const TriangleTree& skin, double tissue = 1);
 
-  /// Signed distance from the hull: the outer surface of skull, teeth and mandible with nose and eye openings closed.
+  /// Signed distance from the hull: the outer surface of skull, teeth and mandible, with nose and eye openings closed.
   double hull(const Vector3d& p) const;
   bool has(const std::string& name) const { return bones_.count(name) + bodies_.count(name) > 0; }
   double part(const std::string& name, const Vector3d& p) const;
@@ -66,8 +66,9 @@ private:
   Eigen::Vector4d linear_{ 0, 0, 0, 0 };
 };
 
-/// Triangles of the surface f = 0 in the box `half` with lower y = 0 and in its mirror image, for an f that is
-/// symmetric in y. Uses marching tetrahedra with cells of `edge` [m]. f is negative inside; normals point outwards.
+/// Triangles of the surface f = 0, for an f that is symmetric in y and negative inside; their normals point outwards.
+/// The surface is found by marching tetrahedra with cells of `edge` [m] in the box `half`, whose lower y is 0, and
+/// mirrored.
 TriangleMesh isosurface(const std::function<double(const Vector3d&)>& f, const Box& half, double edge);
 
 /// The head of a template with given dimensions. All parts are made for the default head and moved by one warp, so that

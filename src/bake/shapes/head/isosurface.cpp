@@ -59,11 +59,12 @@ private:
     return { origin_[0] + edge_ * i[0], i[1] == 0 ? origin_[1] : origin_[1] + edge_ * i[1], origin_[2] + edge_ * i[2] };
   }
 
-  /// Where |f| is at least this [m], the surface is farther away than the points of a block and their neighbours.
+  /// If |f| is at least this value [m], the surface is farther away than the points of a block and their neighbours.
   double far() const { return 1.5 * block * edge_; }
   bool near(const Index& i) const { return std::abs(values_[number(i)]) < far(); }
 
-  /// Fills the values at a block of grid points. If the block's middle is far from the surface, all get its value.
+  /// Fills the values at a block of grid points. If the block's middle is far from the surface, all points get its
+  /// value.
   void sample(const std::function<double(const Vector3d&)>& f, const Index& first)
   {
     const double middle = f(at(first) + Vector3d::Constant(0.5 * (block - 1) * edge_));
@@ -74,7 +75,8 @@ private:
         {
           const bool border = i == 0 || i == size_[0] - 1 || j == size_[1] - 1 || k == 0 || k == size_[2] - 1;
           const double value = near ? f(at({ i, j, k })) : middle;
-          // positive values close the surface at the border; small ones are raised, so that no grid point lies on it
+          // Positive values close the surface at the border. Small values are raised, so that no grid point lies on the
+          // surface.
           values_[number({ i, j, k })] = border ? std::max(value, edge_) : std::abs(value) < 1e-9 ? 1e-9 : value;
         }
   }
@@ -120,7 +122,7 @@ private:
       const std::size_t inner = number(index[cut.first]), outer = number(index[cut.second]);
       if (values_[outer] == 0)
         return snapped_.at(outer);
-      // interpolate from the point of the lower number, so that neighbours find the same position
+      // The position is interpolated from the point with the lower index, so that neighbours find the same position.
       const bool ordered = inner < outer;
       const std::size_t a = ordered ? inner : outer, b = ordered ? outer : inner;
       const Vector3d from = at(index[ordered ? cut.first : cut.second]),
@@ -130,7 +132,7 @@ private:
     const Vector3d outward = at(index[out[0]]) - at(index[in[0]]);
     const auto triangle = [&](const Cut& a, const Cut& b, const Cut& c)
     {
-      // decide by grid points, because snapped corners may be collinear
+      // The orientation is decided by grid points, because snapped corners may be collinear.
       const auto middle = [&](const Cut& cut) -> Vector3d { return at(index[cut.first]) + at(index[cut.second]); };
       const bool turned = (middle(b) - middle(a)).cross(middle(c) - middle(a)).dot(outward) < 0;
       const auto base = static_cast<std::int32_t>(mesh.vertices.size());
@@ -167,7 +169,7 @@ TriangleMesh isosurface(const std::function<double(const Vector3d&)>& f, const B
     p[1] = p[1] == 0 ? 0 : -p[1];
   append(mesh, image, true);
   join_vertices(mesh);
-  // drops vertices that no triangle uses
+  // Drops vertices that no triangle uses.
   return keep_triangles(mesh, std::vector<bool>(mesh.triangles.size(), true));
 }
 

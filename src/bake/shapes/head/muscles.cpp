@@ -6,9 +6,9 @@ namespace frontalis
 namespace
 {
 
-// Distance of control points along a muscle.
+// Distance between control points along a muscle.
 constexpr double point_distance = 5e-3;  // [m]
-// A muscle stays this far below the skin where there is room: the thickness of the dermis.
+// A muscle stays at least this far below the skin, where there is room: the thickness of the dermis.
 constexpr double least_cover = 1.8e-3;  // [m]
 
 double length_of(const std::vector<Vector3>& points, bool closed)
@@ -47,7 +47,8 @@ Value interpolate(const At& at, int count, double t)
          (2 * p1 + (p2 - p0) * s + (2 * p0 - 5 * p1 + 4 * p2 - p3) * s * s + (3 * p1 - p0 - 3 * p2 + p3) * s * s * s);
 }
 
-/// Thickness at fractions of a muscle's length and breadth, over the mean thickness in its middle. Edges are thin.
+/// Thickness at fractions of a muscle's length and breadth, divided by the mean thickness in its middle. Edges are
+/// thin.
 double cross_section(double along, double across)
 {
   const double edge = std::abs(2 * across - 1), end = std::abs(2 * along - 1);
@@ -75,7 +76,7 @@ ControlNet Head::left_net(const HeadTemplate::Muscle& muscle) const
     if (c > 0)
       reach += (along(curves[c].points, 0.5) - along(curves[c - 1].points, 0.5)).norm();
   }
-  // a ring's curves are loops, along which its fibres run; otherwise fibres run from curve to curve
+  // A ring's curves are loops along which its fibres run. In other muscles fibres run from curve to curve.
   if (muscle.ring)
     std::swap(reach, width);
   const auto points_over = [](double length, int least)
@@ -89,7 +90,7 @@ ControlNet Head::left_net(const HeadTemplate::Muscle& muscle) const
     {
       const double s = static_cast<double>(j) / (across - 1);
       const double u = muscle.ring ? static_cast<double>(i) / n : static_cast<double>(i) / (n - 1);
-      // position between the curves
+      // Position between the curves.
       const double t = (muscle.ring ? s : u) * (count - 1);
       const Vector3d p = interpolate<Vector3d>(
           [&](int c) { return muscle.ring ? around(curves[c].points, u) : along(curves[c].points, s); }, count, t);
@@ -97,7 +98,7 @@ ControlNet Head::left_net(const HeadTemplate::Muscle& muscle) const
       const double room = place.thickness;
       const double depth = interpolate<double>(
           [&](int c) { return curves[c].below < 0 ? curves[c].depth * room : curves[c].below; }, count, t);
-      // a muscle with a depth of its own (Curve::below) may pass below a bone
+      // A muscle with a depth of its own (Curve::below) may pass below a bone.
       const bool free = std::any_of(curves.begin() + static_cast<int>(t),
                                     curves.begin() + std::min(count, static_cast<int>(std::ceil(t)) + 1),
                                     [](const auto& curve) { return curve.below >= 0; });

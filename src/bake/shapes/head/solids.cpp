@@ -98,7 +98,7 @@ HeadSolid::HeadSolid(const HeadTemplate::Solid& solid)
   }
   else if (kind_ == Kind::tube)
   {
-    // radii are interpolated as a fourth coordinate
+    // Radii are interpolated as a fourth coordinate.
     std::vector<Eigen::Vector4d> with_radius;
     with_radius.reserve(points.size());
     for (std::size_t i = 0; i < points.size(); ++i)
@@ -118,7 +118,7 @@ void HeadSolid::place_teeth(const std::vector<Vector3d>& arch, const std::vector
   double begin = 0;
   for (const Vector3& size : sizes)
   {
-    // find the tooth's middle by its distance along the arch
+    // The tooth's middle is found by its distance along the arch.
     double left = begin + 0.5 * size[0];
     begin += size[0];
     std::size_t i = 1;
@@ -136,7 +136,7 @@ double HeadSolid::row_of_teeth(const Vector3d& p) const
 {
   constexpr double gap = 0.15e-3, root = 3e-3;  // [m]
   const double height = from_ - to_;            // signed height of the crown, from the edge to the neck
-  // `up` is 0 at the edge and 1 at the neck
+  // `up` is 0 at the edge and 1 at the neck.
   const double up = std::min(1.0, std::max(0.0, (p[2] - to_) / height));
   double least = 1e300;
   for (const Tooth& tooth : teeth_)
@@ -160,7 +160,7 @@ double HeadSolid::outline(const Vector3d& p) const
   double f = 0;
   if (depth_ != 0)
   {
-    // a cone with its apex at `centre`; the outline lies at the distance `depth` from the apex
+    // A cone with its apex at `centre`. The outline lies at the distance `depth` from the apex.
     const Vector2d apex(centre_[axis_ == 0 ? 1 : 0], centre_[axis_ == 2 ? 1 : 2]);
     const double scale = std::max(0.05, (p[axis_] - centre_[axis_]) / depth_);
     f = scale * distance(apex + (q - apex) / scale, polygon_);

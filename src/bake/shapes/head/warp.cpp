@@ -11,9 +11,10 @@ namespace
 // Correlation length of the landmarks' displacements: about half the height of a face.
 constexpr double correlation_length = 60e-3;  // [m]
 constexpr int iterations = 12;
-// A dimension farther from the mean than this many standard deviations is refused: hardly one person in 10^8 has it.
+// A dimension that differs from the mean by more than this number of standard deviations is refused: hardly one person
+// in 10^8 has it.
 constexpr double most_deviations = 6;
-// A dimension that others determine may be given if it differs from the resulting value by no more than this.
+// A dimension that other dimensions determine may be given if it differs from the resulting value by at most this.
 constexpr double derived_tolerance = 1e-3;  // [m]
 
 double covariance(double distance)
@@ -67,11 +68,11 @@ HeadWarp::HeadWarp(const HeadTemplate& head, const std::map<std::string, Vector3
       throw failure("head: dimension '{}' is {:.1f} mm; must be {:.1f} to {:.1f} mm", name, 1e3 * value,
                     1e3 * (d->mean - most_deviations * d->deviation), 1e3 * (d->mean + most_deviations * d->deviation));
   }
-  // a dimension of one side is prescribed on both sides, so that the field is symmetric
+  // A dimension of one side is prescribed on both sides, so that the field is symmetric.
   std::vector<Span> spans;
   const auto measure = [](const std::vector<Vector3d>& places, std::size_t from, std::size_t to)
   { return (places[to] - places[from]).norm(); };
-  // dimensions that are not given keep the value of the default head
+  // Dimensions that are not given keep the value of the default head.
   const auto value_of = [&](const HeadTemplate::Dimension& d)
   {
     const auto given = wanted.find(d.name);
@@ -105,7 +106,7 @@ HeadWarp::HeadWarp(const HeadTemplate& head, const std::map<std::string, Vector3
       jacobian.block<1, 3>(s, 3 * static_cast<Eigen::Index>(span.from)) = -along.transpose();
       missing[s] = span.wanted - measure(moved, span.from, span.to);
     }
-    Eigen::MatrixXd spread(m, 3 * n);  // jacobian times the covariance
+    Eigen::MatrixXd spread(m, 3 * n);  // the Jacobian times the covariance
     for (int a = 0; a < 3; ++a)
     {
       Eigen::MatrixXd part(m, n);
