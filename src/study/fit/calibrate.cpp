@@ -128,9 +128,9 @@ VectorXd conjugate_forces(const Model& model, const std::vector<BodyFrame>& bone
   return out;
 }
 
-double root_mean_square(double sum, std::size_t poses, Index coordinates)
+double root_mean_square(double sum, std::size_t poses, std::size_t landmarks)
 {
-  return poses == 0 ? NAN : std::sqrt(sum / static_cast<double>(poses) / static_cast<double>(coordinates / 3));
+  return poses == 0 ? NAN : std::sqrt(sum / static_cast<double>(poses * landmarks));
 }
 
 }  // namespace
@@ -258,7 +258,7 @@ Calibration calibrate(const std::shared_ptr<const Model>& model, const std::vect
     std::map<std::string, double> named;
     for (std::size_t i = 0; i < parts.size(); ++i)
       named[parts[i].name] = moved[static_cast<Index>(i)];
-    const VectorXd displaced = (runs.settle(named) - influence.rest)(seen);
+    VectorXd displaced = (runs.settle(named) - influence.rest)(seen);
     poses.offset[pose] = displaced - VectorXd(law.displacement(moved)(seen));
     return displaced;
   };
@@ -284,10 +284,10 @@ Calibration calibrate(const std::shared_ptr<const Model>& model, const std::vect
   }
   out.poses = used.size();
   out.held_out = count - used.size();
-  const auto coordinates = static_cast<Index>(seen.size());
-  out.error = root_mean_square(error, used.size(), coordinates);
-  out.held_out_error = root_mean_square(held_out_error, count - used.size(), coordinates);
-  out.error_before = root_mean_square(before, count, coordinates);
+  const std::size_t points = landmarks.landmarks.size();
+  out.error = root_mean_square(error, used.size(), points);
+  out.held_out_error = root_mean_square(held_out_error, count - used.size(), points);
+  out.error_before = root_mean_square(before, count, points);
   out.modulus = square > 0 ? dot / square : NAN;
   out.gains.assign(gains.begin(), gains.end());
   out.actuators = actuators;
