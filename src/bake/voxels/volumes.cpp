@@ -1,6 +1,7 @@
 #include "bake/voxels/volumes.hpp"
 
 #include "bake/messages.hpp"
+#include "frontalis/physics/materials/lookup.hpp"
 
 namespace frontalis
 {
@@ -8,6 +9,11 @@ namespace frontalis
 Volumes::Volumes(const Scene& scene, const PreparedSurfaces& surfaces, double sample_spacing)
     : scene_(&scene), surfaces_(&surfaces)
 {
+  for (const SceneMaterial& material : scene.materials)
+  {
+    const Material made = material_of(scene, material);
+    shear_.push_back(physics::shear_modulus_of(made.law, made.parameters));
+  }
   for (const Volume& volume : scene.volumes)
   {
     Entry entry;
