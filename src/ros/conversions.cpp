@@ -260,7 +260,7 @@ visualization_msgs::MarkerArray to_bodies(const Model& model, const std::string&
     marker.pose.orientation.w = 1;
     marker.scale.x = marker.scale.y = marker.scale.z = 1;
     // the shapes are those of the contacts, in their order
-    const bool only_shown = model.contacts[out.markers.size() - 2].points.empty();
+    const bool only_shown = model.contacts[out.markers.size() - 1].points.empty();
     const BodyAppearance look = body_appearance(shape.name, only_shown, *shape.surface);
     marker.color.r = look.colour[0];
     marker.color.g = look.colour[1];
