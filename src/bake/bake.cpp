@@ -138,7 +138,6 @@ Model bake(const Scene& scene, BakeReport* report, const BakeProgress& progress)
 
   monitor.begin("layers");
   add_thin_layers(volumes, frame, model, monitor);
-  average_other_laws(model);
 
   turn_families(scene, surfaces, frame, model, monitor);
 

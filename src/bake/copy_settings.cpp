@@ -6,8 +6,10 @@
 
 namespace frontalis
 {
+namespace
+{
 
-Material material_of(const Scene& scene, const SceneMaterial& material)
+Material material_of(const Scene& scene, const SceneMaterial& material, const LocalFrame& frame)
 {
   const std::string place = fmt::format("{}:{}: material '{}'", scene.file, material.line, material.name);
   const auto parameter = [&](const std::string& name)
@@ -32,7 +34,7 @@ Material material_of(const Scene& scene, const SceneMaterial& material)
   out.parameters = physics::numbers_of(*law, given, poisson);
   for (int d = 0; d < description.directions; ++d)
   {
-    const Vector3& direction = material.families[static_cast<std::size_t>(d)];
+    const Vector3 direction = frame.turn(material.families[d]);
     std::copy(direction.begin(), direction.end(), out.parameters.begin() + physics::first_direction + 3 * d);
   }
   for (std::size_t term = 0; term < material.viscosity.size() && term < out.viscous_share.size(); ++term)
@@ -50,9 +52,6 @@ Material material_of(const Scene& scene, const SceneMaterial& material)
     throw failure("{}: density is {} kg/m3; it must be above 0", place, material.density);
   return out;
 }
-
-namespace
-{
 
 /// Axes of the face frame (forward, left, up) as unit vectors in scene axes.
 std::array<Vector3d, 3> face_axes(const Scene& scene)
@@ -128,15 +127,7 @@ void copy_settings(const Scene& scene, const LocalFrame& frame, Model& model)
   model.activation_slew = scene.time.activation_slew * scene.time.scaling;
   model.time_step_share = scene.accuracy.time_step_share;
   for (const SceneMaterial& material : scene.materials)
-  {
-    model.materials.push_back(material_of(scene, material));
-    for (const std::size_t d : { 0, 3 })
-    {
-      double* const direction = model.materials.back().parameters.data() + physics::first_direction + d;
-      const Vector3 turned = frame.turn(Vector3{ direction[0], direction[1], direction[2] });
-      std::copy(turned.begin(), turned.end(), direction);
-    }
-  }
+    model.materials.push_back(material_of(scene, material, frame));
   if (scene.accuracy.assumed_strain)
     model.hourglass = HourglassControl::assumed_strain;
   if (scene.accuracy.integration == "selective_reduced")

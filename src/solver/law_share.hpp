@@ -1,6 +1,5 @@
 #pragma once
 
-#include "frontalis/physics/laminate.hpp"
 #include "solver/material_laws.hpp"
 
 namespace frontalis
@@ -35,41 +34,5 @@ struct LawShare
     return sum;
   }
 };
-
-/// The sheet of a laminate, in the same form. Its parameters are in the slots of a material's: see sheet_part().
-template <class T>
-struct SheetShare
-{
-  const LawShare<T>& share;
-
-  FRONTALIS_LAW physics::Sheet<T> sheet() const
-  {
-    const T* const p = share.parameters;
-    const T* const n = p + physics::first_direction;
-    return { share.weight * p[0], share.weight * p[physics::slot_of(1)], { n[0], n[1], n[2] } };
-  }
-  FRONTALIS_LAW void add_stress(const physics::Kinematics<T>& k, physics::Matrix3<T>& P) const
-  {
-    physics::add_stress(sheet(), k, P);
-  }
-  FRONTALIS_LAW T stiffening(const physics::Kinematics<T>& k) const
-  {
-    using N = physics::Number<T>;
-    const T* const p = share.parameters;
-    const physics::Sheet<T> unit{ p[0], p[physics::slot_of(1)], sheet().normal };
-    return share.per_tangent * N::max(physics::tangent_stiffness(unit, k) - share.at_rest, N::of(0));
-  }
-  FRONTALIS_LAW T energy(const physics::Kinematics<T>& k) const { return physics::energy(sheet(), k); }
-};
-
-/// Calls visit() with the law as LawShare or SheetShare.
-template <class T, class Visit>
-FRONTALIS_LAW void visit_share(const LawShare<T>& share, Visit&& visit)
-{
-  if (share.law == physics::sheet_law)
-    visit(SheetShare<T>{ share });
-  else
-    visit(share);
-}
 
 }  // namespace frontalis

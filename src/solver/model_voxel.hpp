@@ -46,7 +46,7 @@ struct ModelVoxel
         part.law, part.weight * properties.tissue_volume, part.stiffness_at_rest, part.per_tangent, {}
       };
       std::copy(part.parameters.begin(), part.parameters.end(), law.parameters);
-      visit_share(law, visit);
+      visit(law);
     }
   }
   void add_laws(const physics::Kinematics<double>& k, physics::Matrix3<double>& P) const

@@ -111,43 +111,6 @@ TEST(CutVoxels, KnowTheCentroidsOfTheirTissue)
   EXPECT_TRUE(bake(staircase).tissue_centre.empty());
 }
 
-// A stiff millimetre below the skin: its voxels have their stress there, and layers whose normals are the sphere's. The
-// stiff layer is thick enough to be sampled, or one that is mixed into the outer voxels.
-TEST(CutVoxels, KnowTheLayersInThem)
-{
-  for (const double thickness : { 1e-3, 0.1e-3 })
-  {
-    Scene scene = layer_scene(8e-3, SceneConstraint::Kind::rigid);
-    SceneMaterial stiff = scene.materials[0];
-    stiff.name = "stiff";
-    stiff.parameters["young"] *= 500 * 1e-3 / thickness;
-    scene.materials.push_back(stiff);
-    scene.layers.push_back({ "stiff", "skin", "tissue", "stiff", thickness });
-    const Model model = bake(scene);
-    ASSERT_EQ(model.material_directions.size(), model.voxels.size());
-    int layered = 0, astray = 0;
-    for (std::size_t e = 0; e < model.voxels.size(); ++e)
-    {
-      Vector3 p;
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        p[axis] = (model.voxels[e][axis] + 0.5 + 0.5 * double(model.tissue_centre[e][axis])) * model.spacing[axis];
-      const Vector3 at = transformed(model.to_scene, p);
-      const double out = std::hypot(at[0], at[1], at[2]);
-      const auto& n = model.material_directions[e];
-      const Vector3 normal = model.to_scene.turned(std::array<float, 3>{ n[0], n[1], n[2] });
-      const double length = std::hypot(normal[0], normal[1], normal[2]);
-      EXPECT_EQ(length > 0, model.mixture_begin[e + 1] - model.mixture_begin[e] > 1);
-      if (length == 0 || model.fill[e] < 0.2F)
-        continue;
-      ++layered;
-      const double cosine = std::abs(normal[0] * at[0] + normal[1] * at[1] + normal[2] * at[2]) / out;
-      astray += cosine < 0.9 || std::abs(out - radius - 8e-3 + thickness / 2) > 0.5e-3 ? 1 : 0;
-    }
-    EXPECT_GT(layered, 200);
-    EXPECT_LT(astray, 0.1 * layered) << thickness;
-  }
-}
-
 TEST(AttachedNodes, AreHeldWhereTissueIsTooThin)
 {
   BakeReport report;

@@ -66,38 +66,6 @@ protected:
   }
 };
 
-// Every other voxel becomes a laminate, a third of it 30 times as stiff, whose layers have a random normal.
-Model with_layers(Model model, unsigned seed = 5)
-{
-  std::mt19937 random(seed);
-  std::normal_distribution<float> value;
-  Material stiff = model.materials[0];
-  for (const std::size_t modulus : { 0, 1 })
-    stiff.parameters[modulus] *= 30;
-  model.materials.push_back(stiff);
-  model.mixture_begin = { 0 };
-  model.mixture_material.clear();
-  model.mixture_proportion.clear();
-  model.tissue_centre.resize(model.voxels.size());
-  model.material_directions.assign(model.voxels.size(), {});
-  for (std::size_t e = 0; e < model.voxels.size(); ++e)
-  {
-    model.mixture_material.push_back(0);
-    model.mixture_proportion.push_back(1);
-    if (e % 2 == 0)
-    {
-      model.mixture_material.push_back(1);
-      model.mixture_proportion.back() = 2.0F / 3;
-      model.mixture_proportion.push_back(1.0F / 3);
-      float n[3] = { value(random), value(random), value(random) };
-      for (const float x : n)
-        model.material_directions[e][static_cast<std::size_t>(&x - n)] = x / std::hypot(n[0], n[1], n[2]);
-    }
-    model.mixture_begin.push_back(static_cast<std::int32_t>(model.mixture_material.size()));
-  }
-  return model;
-}
-
 // the highest squared frequency of one voxel over its bound, in a random state of deformation
 double true_over_bound(const Model& model, double amplitude)
 {
@@ -114,7 +82,7 @@ TEST_P(CutVoxels, ForcesAreTheGradientOfTheEnergy)
 {
   for (const auto hourglass : { HourglassControl::scalar, HourglassControl::assumed_strain })
   {
-    const Model model = with_layers(cut_block(hourglass));
+    const Model model = cut_block(hourglass);
     const auto energies = make_solver(std::make_shared<const Model>(model), { "reference", 0, 0 });
     const auto solver_ = solver(model);
     const Vectors u = random_vectors(model, 1.5e-4);
@@ -141,7 +109,7 @@ TEST_P(CutVoxels, ForcesAreTheGradientOfTheEnergy)
 
 TEST_P(CutVoxels, MoveAsInTheReference)
 {
-  Model model = with_layers(cut_block());
+  Model model = cut_block();
   for (std::int32_t n = 0; n < 20; ++n)
     model.rigid.push_back({ n, -1, -1 });
   model.gravity = { { 2, 1, -9.81 } };
@@ -181,32 +149,6 @@ TEST_P(CutVoxels, UniformStrainHasTheEnergyOfWholeVoxels)
   EXPECT_NEAR(energy[1], energy[0], 1e-5 * energy[0]);
 }
 
-// Along the layers the shear modulus is the arithmetic mean, across them the harmonic one.
-TEST_P(CutVoxels, LayersShearLikeALaminate)
-{
-  Model model = with_layers(cut_block());
-  for (auto& normal : model.material_directions)
-    normal = { 0, 0, 1, 0, 0, 0 };
-  const double soft = model.materials[0].parameters[0], stiff = model.materials[1].parameters[0];
-  double tissue = 0, layered = 0;
-  for (std::size_t e = 0; e < model.voxels.size(); ++e)
-    (e % 2 == 0 ? layered : tissue) +=
-        double(model.fill[e]) * model.spacing[0] * model.spacing[1] * model.spacing[2];
-  const double expected[2] = { tissue * soft + layered * (2 * soft + stiff) / 3,
-                               tissue * soft + layered * 3 / (2 / soft + 1 / stiff) };
-  const double shear = 1e-2;
-  for (const std::size_t across : { 0, 1 })
-  {
-    Vectors u(model.nodes.size());
-    for (std::size_t n = 0; n < u.size(); ++n)
-      u[n] = { { shear * test::rest(model, n)[1 + across], 0, 0 } };
-    const auto solver_ = solver(model);
-    solver_->set_displacements(u);
-    EXPECT_NEAR(solver_->monitor().internal, 0.5 * shear * shear * expected[across], 2e-3 * 0.5 * shear * shear *
-                expected[across]) << across;
-  }
-}
-
 // At the bound of the time step the energy of a vibration does not grow.
 TEST_P(CutVoxels, TheBoundOfTheTimeStepHolds)
 {
@@ -214,7 +156,7 @@ TEST_P(CutVoxels, TheBoundOfTheTimeStepHolds)
   {
     test::BlockSettings settings;
     settings.poisson = poisson;
-    Model model = with_layers(cut_block(HourglassControl::scalar, settings));
+    Model model = cut_block(HourglassControl::scalar, settings);
     model.time_step_share = 0.99;
     const auto solver_ = solver(model);
     solver_->set_velocities(random_vectors(model, 1e-3));
@@ -252,8 +194,6 @@ TEST(CutVoxel, HasNoHigherFrequencyThanTheBound)
         model.tissue_centre = { { value(random), value(random), value(random) } };
         if (i % 5 == 0)
           model.tissue_centre = { { 1, 1, -1 } };
-        if (i % 4 == 1)
-          model = with_layers(model, static_cast<unsigned>(i));
         const double found = true_over_bound(model, i % 3 == 0 ? 1e-9 : 1e-4);
         EXPECT_LT(found, 1.02) << poisson << " " << i;
         worst = std::max(worst, found);

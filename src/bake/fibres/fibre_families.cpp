@@ -65,7 +65,7 @@ void turn_families(const Scene& scene, const PreparedSurfaces& surfaces, const L
       agreement[main[e]] += across[main[e]].dot(normal[e]);
   if (std::all_of(main.begin(), main.end(), [](int m) { return m < 0; }))
     return;
-  model.material_directions.resize(voxels);
+  model.material_directions.assign(voxels, {});
   for (std::size_t e = 0; e < voxels; ++e)
   {
     const int m = main[e];

@@ -78,7 +78,7 @@ void BlockClassifier::add_part(const VoxelPlace& place, const std::vector<char>&
   sample_alone(place);
   chosen_ = nullptr;
   const double fill = std::accumulate(share_.material.begin(), share_.material.end(), 0.0);
-  add_voxel(place, fill);
+  add_voxel(place, fill, 2 * (tissue_offset_ / fill - mean_offset_));
 }
 
 void BlockClassifier::visit(const VoxelPlace& begin, const VoxelPlace& end, BlockState state)
@@ -94,7 +94,6 @@ void BlockClassifier::visit(const VoxelPlace& begin, const VoxelPlace& end, Bloc
   if (known)
   {
     share_ = nothing_;
-    tissue_ = stiffness_ = {};
     std::vector<double> depth;
     for (const auto& d : state.depth)
       depth.push_back(d.value);
@@ -103,7 +102,7 @@ void BlockClassifier::visit(const VoxelPlace& begin, const VoxelPlace& end, Bloc
     for (std::int32_t k = begin[2]; k < end[2]; ++k)
       for (std::int32_t j = begin[1]; j < end[1]; ++j)
         for (std::int32_t i = begin[0]; i < end[0]; ++i, ++voxels)
-          add_voxel({ i, j, k }, 1);
+          add_voxel({ i, j, k }, 1, Vector3d::Zero());
     for (std::size_t v = 0; v < state.inside_volume.size(); ++v)
       share_.volume[v] = state.inside_volume[v] == Answer::yes ? 1 : 0;
     add_sizes(voxels);
@@ -116,7 +115,7 @@ void BlockClassifier::visit(const VoxelPlace& begin, const VoxelPlace& end, Bloc
     add_sizes(1);
     const auto passes = [&box](const PreparedSurface* surface) { return surface->tree().overlaps(box); };
     if (fill > 0 && (fill >= fill_min_ || std::any_of(kept_at_.begin(), kept_at_.end(), passes)))
-      add_voxel(begin, fill);
+      add_voxel(begin, fill, 2 * (tissue_offset_ / fill - mean_offset_));
     return;
   }
 

@@ -66,10 +66,9 @@ private:
   double sample_depth(std::size_t field, const Vector3d& p, const BlockState& state);
   bool in_sight(const Volumes::Entry& entry, const Vector3d& p, double bound) const;
 
-  /// Returns the shear modulus of the materials to which the share was added; 0 if there are none.
-  double add_share(const std::vector<Answer>& inside, const std::vector<double>& depth, double share);
+  void add_share(const std::vector<Answer>& inside, const std::vector<double>& depth, double share);
   void add_sizes(double voxels);
-  void add_voxel(const VoxelPlace& place, double fill);
+  void add_voxel(const VoxelPlace& place, double fill, const Vector3d& centre);
 
   const Volumes& volumes_;
   const Grid& grid_;
@@ -90,25 +89,7 @@ private:
     std::vector<std::vector<double>> band;
   };
   Proportions nothing_, share_;
-
-  /// Sums over the samples of a voxel, at their offsets; all 0 in a uniform block.
-  struct Moments
-  {
-    double weight = 0;
-    Vector3d first{ 0, 0, 0 };
-    Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
-
-    void add(const Vector3d& offset, double amount)
-    {
-      weight += amount;
-      first += amount * offset;
-      second += amount * offset * offset.transpose();
-    }
-    Vector3d mean() const { return first / weight; }
-    Eigen::Matrix3d covariance() const { return second / weight - mean() * mean().transpose(); }
-  };
-  Vector3d layer_normal() const;
-  Moments tissue_, stiffness_;  ///< of the samples' volumes, and of these times their shear moduli
+  Vector3d tissue_offset_{ 0, 0, 0 };  ///< sum of the samples' offsets times their shares of material
 
   // Data computed once per sampled voxel, near its middle, and used for all its samples.
   struct NearbyBody

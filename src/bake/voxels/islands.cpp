@@ -90,16 +90,12 @@ void keep_voxels(Model& model, const std::vector<bool>& keep)
       continue;
     model.voxels[kept] = model.voxels[e];
     if (!model.tissue_centre.empty())
-    {
       model.tissue_centre[kept] = model.tissue_centre[e];
-      model.material_directions[kept] = model.material_directions[e];
-    }
     model.fill[kept++] = model.fill[e];
   }
   model.voxels.resize(kept);
   model.fill.resize(kept);
   model.tissue_centre.resize(model.tissue_centre.empty() ? 0 : kept);
-  model.material_directions.resize(model.tissue_centre.size());
 
   // the nodes that stay keep their order
   const std::vector<std::array<std::int32_t, 3>> old = std::move(model.nodes);

@@ -145,11 +145,7 @@ LocalFrame assemble_voxels(const Grid& grid, const Voxels& voxels, Model& model)
     model.voxels.push_back(places[e]);
     model.fill.push_back(voxels.fill[e]);
     if (!voxels.centre.empty())
-    {
       model.tissue_centre.push_back(frame.turn(voxels.centre[e]));
-      const auto normal = frame.turn(voxels.normal[e]);
-      model.material_directions.push_back({ normal[0], normal[1], normal[2], 0, 0, 0 });
-    }
     copy(voxels.materials, e, model.mixture_begin, model.mixture_material, model.mixture_proportion);
     copy(voxels.muscles, e, model.fibre_begin, model.fibre_muscle, model.fibre_weight);
   }

@@ -113,9 +113,6 @@ void remove_islands(Model& model, BakeMonitor& monitor);
 /// volume of the layer is preserved.
 void add_thin_layers(const Volumes& volumes, const LocalFrame& frame, Model& model, BakeMonitor& monitor);
 
-/// Removes the normals of layers from voxels with a material that is not neo-Hookean, whose moduli are averaged.
-void average_other_laws(Model& model);
-
 /// Fills the model's directions of materials whose fibre families follow a surface. In each voxel the families are
 /// turned by the shortest rotation from the normal of their plane to the surface's normal at the point closest to the
 /// voxel's centre. The sign of the plane's normal is chosen to agree with the surface's normals in most voxels. In a

@@ -1,7 +1,6 @@
 #include "bake/messages.hpp"
 #include "bake/voxels/model_stages.hpp"
 #include "bake/voxels/voxel_index.hpp"
-#include "frontalis/physics/materials/lookup.hpp"
 
 #include <numeric>
 
@@ -41,22 +40,7 @@ double area(const Polygon& polygon)
   return 0.5 * sum.norm();
 }
 
-/// A surface in a voxel: its area, and integrals over the area.
-struct SurfaceInVoxel
-{
-  double area = 0;
-  Vector3d middle{ 0, 0, 0 };  ///< of the position [m3]
-  Vector3d normal{ 0, 0, 0 };  ///< of the unit normal [m2]
-
-  void add(const Vector3d& at, const Vector3d& direction, double amount)
-  {
-    area += amount;
-    middle += amount * at;
-    normal += amount * direction.normalized();
-  }
-};
-
-/// The parts of a surface in the voxels of the model.
+/// Area of a surface in each voxel of the model.
 class AreaInVoxels
 {
 public:
@@ -64,7 +48,7 @@ public:
       : model_(model),
         frame_(frame),
         index_(model),
-        part_(model.voxels.size()),
+        area_(model.voxels.size(), 0),
         crop_(frame.to_local(to_vector(crop.lower)), frame.to_local(to_vector(crop.upper)))
   {
   }
@@ -77,7 +61,7 @@ public:
     add_along(whole, 0, (v[1] - v[0]).cross(v[2] - v[0]), { 0, 0, 0 });
   }
 
-  const std::vector<SurfaceInVoxel>& parts() const { return part_; }
+  const std::vector<double>& area() const { return area_; }
 
 private:
   /// Cuts a polygon at the grid planes normal to `axis` and to the following axes, and adds the area of each piece to
@@ -93,9 +77,9 @@ private:
           std::accumulate(polygon.begin(), polygon.end(), Vector3d(Vector3d::Zero())) / polygon.size();
       const Vector3d inside = middle - 0.02 * model_.spacing[0] * normal.normalized();
       if (const std::int32_t e = amount > 0 ? frame_.owner(model_, index_, inside) : -1; e >= 0)
-        part_[e].add(middle, normal, amount);
+        area_[e] += amount;
       else
-        give(place, middle, normal, amount);
+        give(place, normal, amount);
       return;
     }
     Box box;
@@ -120,14 +104,14 @@ private:
   }
 
   /// Adds area to a voxel or, if the model has no such voxel, to the first of the next two inwards that exists.
-  void give(VoxelPlace place, const Vector3d& middle, const Vector3d& normal, double amount)
+  void give(VoxelPlace place, const Vector3d& normal, double amount)
   {
     Eigen::Index axis = 0;
     normal.cwiseAbs().maxCoeff(&axis);
     for (int step = 0; step<3; ++step, place[axis] += normal[axis]> 0 ? -1 : 1)
       if (const std::int32_t e = index_.find(place); e >= 0)
       {
-        part_[e].add(middle, normal, amount);
+        area_[e] += amount;
         return;
       }
   }
@@ -135,42 +119,10 @@ private:
   const Model& model_;
   const LocalFrame& frame_;
   VoxelIndex index_;
-  std::vector<SurfaceInVoxel> part_;
+  std::vector<double> area_;
   Box crop_;
   Polygon scratch_;
 };
-
-/// Arithmetic mean of the shear moduli in a voxel [Pa].
-double shear_of(const Model& model, std::size_t e)
-{
-  double sum = 0;
-  for (std::int32_t m = model.mixture_begin[e]; m < model.mixture_begin[e + 1]; ++m)
-  {
-    const Material& material = model.materials[model.mixture_material[m]];
-    sum += static_cast<double>(model.mixture_proportion[m]) *
-           physics::shear_modulus_of(material.law, material.parameters);
-  }
-  return sum;
-}
-
-/// Moves the centroid of a voxel's stiffness for a thin layer that is laid on it. The layers of the voxel get the normal
-/// of the stiffer ones. `stiffness` and `below`: shear moduli of the layer and of the tissue, times their shares [Pa].
-void lay_on(const SurfaceInVoxel& layer, double stiffness, double below, Model& model, std::size_t e)
-{
-  const auto place = rest_place(model, model.voxels[e]);
-  auto& centre = model.tissue_centre[e];
-  for (std::size_t axis = 0; axis < 3; ++axis)
-  {
-    const auto a = static_cast<Eigen::Index>(axis);
-    const double at = 2 * (layer.middle[a] / layer.area / model.spacing[axis] - place[axis]) - 1;
-    const double moved = (below * static_cast<double>(centre[axis]) + stiffness * at) / (below + stiffness);
-    centre[axis] = static_cast<float>(std::clamp(moved, -1.0, 1.0));
-  }
-  auto& normal = model.material_directions[e];
-  const bool alone = normal == std::array<float, 6>{};
-  if (alone || stiffness > below)
-    Eigen::Map<Eigen::Vector3f>(normal.data()) = layer.normal.normalized().cast<float>();
-}
 
 }  // namespace
 
@@ -191,22 +143,16 @@ void add_thin_layers(const Volumes& volumes, const LocalFrame& frame, Model& mod
     std::size_t voxels = 0;
     for (std::size_t e = 0; e < model.voxels.size(); ++e)
     {
-      if (areas.parts()[e].area <= 0)
+      if (areas.area()[e] <= 0)
         continue;
-      wanted += areas.parts()[e].area * layer.thickness;
+      wanted += areas.area()[e] * layer.thickness;
       tissue += static_cast<double>(model.fill[e]) * voxel_volume;
       ++voxels;
     }
     const double given = tissue > 0 ? std::min(wanted / tissue, most_of_voxel) : 0;
     std::vector<float> share(model.voxels.size());
     for (std::size_t e = 0; e < share.size(); ++e)
-      if (areas.parts()[e].area > 0)
-      {
-        share[e] = static_cast<float>(given);
-        if (!model.tissue_centre.empty())
-          lay_on(areas.parts()[e], given * volumes.shear()[static_cast<std::size_t>(layer.material)],
-                 (1 - given) * shear_of(model, e), model, e);
-      }
+      share[e] = areas.area()[e] > 0 ? static_cast<float>(given) : 0;
     monitor.found("layer '{}': too thin to sample; mixed into {} outer voxels, {:.4g} mm3{}", layer.name, voxels,
                   1e9 * given * tissue, given * tissue < 0.99 * wanted ? " (limited, because it would fill them)" : "");
     shares.push_back(std::move(share));
@@ -231,17 +177,6 @@ void add_thin_layers(const Volumes& volumes, const LocalFrame& frame, Model& mod
   model.mixture_begin = std::move(mixed.begin);
   model.mixture_material = std::move(mixed.number);
   model.mixture_proportion = std::move(mixed.share);
-}
-
-void average_other_laws(Model& model)
-{
-  for (std::size_t e = 0; e < model.material_directions.size(); ++e)
-    for (std::int32_t m = model.mixture_begin[e]; m < model.mixture_begin[e + 1]; ++m)
-      if (model.materials[model.mixture_material[m]].law != Law::neo_hookean)
-        model.material_directions[e] = {};
-  const auto& all = model.material_directions;
-  if (std::all_of(all.begin(), all.end(), [](const auto& d) { return d == std::array<float, 6>{}; }))
-    model.material_directions.clear();
 }
 
 }  // namespace frontalis

@@ -1,7 +1,6 @@
 #include "bake/voxels/volumes.hpp"
 
 #include "bake/messages.hpp"
-#include "frontalis/physics/materials/lookup.hpp"
 
 namespace frontalis
 {
@@ -9,11 +8,6 @@ namespace frontalis
 Volumes::Volumes(const Scene& scene, const PreparedSurfaces& surfaces, double sample_spacing)
     : scene_(&scene), surfaces_(&surfaces)
 {
-  for (const SceneMaterial& material : scene.materials)
-  {
-    const Material made = material_of(scene, material);
-    shear_.push_back(physics::shear_modulus_of(made.law, made.parameters));
-  }
   for (const Volume& volume : scene.volumes)
   {
     Entry entry;

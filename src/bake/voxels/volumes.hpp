@@ -64,8 +64,6 @@ public:
   const PreparedSurface& body(std::size_t index) const { return *bodies_[index]; }
   const std::vector<DepthField>& depth_fields() const { return depth_fields_; }
   const std::vector<ThinLayer>& thin_layers() const { return thin_layers_; }
-  /// Shear modulus at rest of each material of the scene [Pa].
-  const std::vector<double>& shear() const { return shear_; }
 
   /// The box around all tissue, in scene coordinates [m]. Throws Error if a tissue volume has no bounds.
   Box tissue_box() const;
@@ -90,11 +88,7 @@ private:
   std::vector<DepthField> depth_fields_;
   std::vector<Entry> entries_;
   std::vector<ThinLayer> thin_layers_;
-  std::vector<double> shear_;
 };
-
-/// A material of the scene, with directions along the scene's axes. Throws Error if a parameter is missing or wrong.
-Material material_of(const Scene& scene, const SceneMaterial& material);
 
 /// Tells whether a point lies in a volume, or the first of the volume's conditions that fails.
 enum class Membership

@@ -1,14 +1,12 @@
 #include "bake/voxels/block_classifier.hpp"
 
-#include <Eigen/Eigenvalues>
-
 namespace frontalis
 {
 
 void BlockClassifier::sample(const Box& box, const BlockState& state)
 {
   share_ = nothing_;
-  tissue_ = stiffness_ = {};
+  tissue_offset_.setZero();
   for (NearbyBody& body : nearby_body_)
     body.known = false;
   for (NearbyDepth& depth : nearby_depth_)
@@ -53,11 +51,11 @@ void BlockClassifier::sample(const Box& box, const BlockState& state)
       for (const Volumes::Band& band : entry.bands)
         sample_depth(band.depth_field, p, state);
     }
-    if (const double shear = add_share(inside, depth_here_, share); shear > 0)
-    {
-      tissue_.add(offsets_[s], share);
-      stiffness_.add(offsets_[s], share * shear);
-    }
+    const auto has_material = [&](const Volumes::Entry& entry)
+    { return entry.material >= 0 && inside[&entry - volumes_.entries().data()] == Answer::yes; };
+    if (std::any_of(volumes_.entries().begin(), volumes_.entries().end(), has_material))
+      tissue_offset_ += share * offsets_[s];
+    add_share(inside, depth_here_, share);
   }
 }
 
@@ -137,7 +135,7 @@ double BlockClassifier::sample_depth(std::size_t field, const Vector3d& p, const
   return here = -surface->signed_distance(p, nearby.search.closest(p, (nearby.distance + way) * (1 + 1e-9) + 1e-12));
 }
 
-double BlockClassifier::add_share(const std::vector<Answer>& inside, const std::vector<double>& depth, double share)
+void BlockClassifier::add_share(const std::vector<Answer>& inside, const std::vector<double>& depth, double share)
 {
   // the volumes with the highest priority among those with a material share the sample equally
   int highest = std::numeric_limits<int>::min();
@@ -154,7 +152,6 @@ double BlockClassifier::add_share(const std::vector<Answer>& inside, const std::
     sharers = entry.volume->priority > highest ? 1 : sharers + 1;
     highest = entry.volume->priority;
   }
-  double shear = 0;
   for (std::size_t v = 0; v < inside.size(); ++v)
   {
     const Volumes::Entry& entry = volumes_.entries()[v];
@@ -165,43 +162,18 @@ double BlockClassifier::add_share(const std::vector<Answer>& inside, const std::
                                    { return depth[b.depth_field] >= b.from && depth[b.depth_field] < b.to; });
     if (!entry.bands.empty())
       share_.band[v][band - entry.bands.begin()] += share;
-    if (entry.material < 0 || entry.volume->priority != highest)
-      continue;
-    const int material = band == entry.bands.end() ? entry.material : band->material;
-    share_.material[material] += share / sharers;
-    shear += volumes_.shear()[material] / sharers;
+    if (entry.material >= 0 && entry.volume->priority == highest)
+      share_.material[band == entry.bands.end() ? entry.material : band->material] += share / sharers;
   }
-  return shear;
 }
 
-// Layers are thin along their normal. So the direction sought is the one along which stiffness varies least in place,
-// compared with the tissue as a whole, which a surface may cut.
-Vector3d BlockClassifier::layer_normal() const
-{
-  // the volume that a sample stands for has an extent, too
-  const Eigen::Matrix3d of_sample =
-      Eigen::Matrix3d::Identity() / (12 * std::pow(static_cast<double>(offsets_.size()), 2.0 / 3));
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix3d> eigen(stiffness_.covariance() + of_sample,
-                                                                        tissue_.covariance() + of_sample);
-  return Vector3d(eigen.eigenvectors().col(0)).cwiseQuotient(grid_.spacing).normalized();
-}
-
-void BlockClassifier::add_voxel(const VoxelPlace& place, double fill)
+void BlockClassifier::add_voxel(const VoxelPlace& place, double fill, const Vector3d& centre)
 {
   voxels_.place.push_back(place);
   voxels_.fill.push_back(static_cast<float>(std::min(1.0, fill)));
-  const auto materials =
-      std::count_if(share_.material.begin(), share_.material.end(), [](double share) { return share > 0; });
-  const bool layered = materials > 1 && stiffness_.weight > 0;
-  Vector3d centre = Vector3d::Zero(), normal = Vector3d::Zero();
-  if (stiffness_.weight > 0 && (layered || fill < 1 - 1e-9))
-    centre = (2 * (stiffness_.mean() - mean_offset_)).cwiseMax(-1).cwiseMin(1);
-  if (layered)
-    normal = layer_normal();
-  const auto floats = [](const Vector3d& v)
-  { return std::array<float, 3>{ static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]) }; };
-  voxels_.centre.push_back(floats(centre));
-  voxels_.normal.push_back(floats(normal));
+  const bool cut = fill < 1 - 1e-9;
+  const auto inside = [cut](double x) { return cut ? static_cast<float>(std::clamp(x, -1.0, 1.0)) : 0.0F; };
+  voxels_.centre.push_back({ inside(centre[0]), inside(centre[1]), inside(centre[2]) });
   voxels_.materials.add(share_.material, fill);
   voxels_.muscles.add(share_.muscle, fill);
 }

@@ -43,7 +43,6 @@ void Voxels::append(const Voxels& other)
   join(place, other.place);
   join(fill, other.fill);
   join(centre, other.centre);
-  join(normal, other.normal);
   materials.append(other.materials);
   muscles.append(other.muscles);
   for (std::size_t v = 0; v < volume_size.size(); ++v)

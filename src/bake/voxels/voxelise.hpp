@@ -41,9 +41,7 @@ struct Voxels
 {
   std::vector<VoxelPlace> place;
   std::vector<float> fill;
-  /// Centroid of the stiffness of the tissue, from -1 to 1 along each axis: that of the tissue if it is one material.
-  std::vector<std::array<float, 3>> centre;
-  std::vector<std::array<float, 3>> normal;  ///< unit normal of the layers in it; 0 with one material
+  std::vector<std::array<float, 3>> centre;  ///< centroid of the tissue, from -1 to 1 along each axis
   Shares materials, muscles;
   /// The flap of each voxel (Model::flaps), 0 for the body; or empty. Voxels of different flaps may share a place.
   std::vector<std::int8_t> flap;

@@ -83,7 +83,7 @@ struct CpuElement
         LawShare<Batch> law{ slot.law, load(slot.weight), load(slot.at_rest), load(slot.per_tangent), {} };
         for (int p = 0; p < 11; ++p)
           law.parameters[p] = load(slot.parameters[p]);
-        visit_share(law, visit);
+        visit(law);
       }
     }
     __attribute__((noinline)) void add_laws(const Kinematics& k, Stress& P) const { physics::add_laws(*this, k, P); }

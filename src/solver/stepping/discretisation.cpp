@@ -2,7 +2,6 @@
 
 #include "frontalis/error.hpp"
 #include "frontalis/physics/hourglass.hpp"
-#include "frontalis/physics/laminate.hpp"
 #include "frontalis/physics/materials/lookup.hpp"
 #include "frontalis/physics/muscle_fibre.hpp"
 #include "frontalis/physics/time_step.hpp"
@@ -73,45 +72,6 @@ physics::Kinematics<double> at_rest()
 {
   const double none[8] = {}, scale[3] = {};
   return physics::kinematics(none, none, none, scale);
-}
-
-// The normal of the layers in a voxel; null if there are none, or if a material is not neo-Hookean: then moduli are
-// averaged.
-const float* layer_normal(const Model& model, std::size_t voxel)
-{
-  if (model.tissue_centre.empty() || model.material_directions.empty())
-    return nullptr;
-  for (auto m = model.mixture_begin[voxel]; m < model.mixture_begin[voxel + 1]; ++m)
-    if (model.materials[model.mixture_material[m]].law != Law::neo_hookean)
-      return nullptr;
-  const float* const n = model.material_directions[voxel].data();
-  return n[0] != 0 || n[1] != 0 || n[2] != 0 ? n : nullptr;
-}
-
-// Replaces the arithmetic means of the moduli of a laminate by harmonic ones, and adds a sheet with the difference.
-void laminate(const Model& model, std::size_t voxel, const float* normal, VoxelProperties& out)
-{
-  double shear = 0, bulk = 0;  // compliances
-  for (auto m = model.mixture_begin[voxel]; m < model.mixture_begin[voxel + 1]; ++m)
-  {
-    const auto& moduli = model.materials[model.mixture_material[m]].parameters;
-    shear += double(model.mixture_proportion[m]) / moduli[0];
-    bulk += double(model.mixture_proportion[m]) / moduli[physics::bulk_modulus_slot];
-  }
-  const double difference = out.mu - 1 / shear;
-  if (!(difference > 1e-6 * out.mu))
-    return;
-  // (1 + nu) / (1 - nu) of the mean
-  const double poisson = (3 * out.kappa - 2 * out.mu) / (6 * out.kappa + 2 * out.mu);
-  const physics::Sheet<double> sheet{ difference, difference * (1 + poisson) / (1 - poisson),
-                                      { double(normal[0]), double(normal[1]), double(normal[2]) } };
-  LawPart part{ physics::sheet_law, 1, {}, physics::tangent_stiffness(sheet, at_rest()), 0, -1 };
-  part.parameters[0] = sheet.shear;
-  part.parameters[physics::slot_of(1)] = sheet.area;
-  std::copy(normal, normal + 3, part.parameters.begin() + physics::first_direction);
-  out.laws.push_back(part);
-  out.mu = 1 / shear;
-  out.kappa = 1 / bulk;
 }
 
 }  // namespace
@@ -334,17 +294,11 @@ void Discretisation::mix(std::size_t e, VoxelProperties& out) const
     out.kappa += proportion * material.parameters[1];
     out.density += proportion * material.density;
   }
-  double shear = out.mu, sheet = 0;
+  double shear = out.mu;
   for (auto& part : out.laws)
   {
     part.stiffness_at_rest = law_stiffness(part.law, part.parameters.data(), at_rest());
     shear += part.weight * part.stiffness_at_rest;
-  }
-  if (const float* const normal = layer_normal(model, e); normal != nullptr)
-  {
-    laminate(model, e, normal, out);
-    shear = out.mu;
-    sheet = out.laws.empty() ? 0 : 2 * out.laws.front().stiffness_at_rest;
   }
   if (!(shear > 0 && out.kappa > 0 && out.density > 0 && model.fill[e] > 0))
     throw Error(fmt::format("voxel {}: shear modulus, bulk modulus, density and fill must be positive", e));
@@ -361,8 +315,8 @@ void Discretisation::mix(std::size_t e, VoxelProperties& out) const
   }
   else if (selective_reduced)
     out.hourglass = 0;
-  out.stiffness = physics::voxel_stiffness(shear, out.kappa, fibre_stiffness(model, e, running_) + sheet,
-                                           out.tissue_volume, h[0], h[1], h[2]);
+  out.stiffness = physics::voxel_stiffness(shear, out.kappa, fibre_stiffness(model, e, running_), out.tissue_volume,
+                                           h[0], h[1], h[2]);
   for (const auto& stiffness : added)
     out.stiffness += stiffness->in_voxel(e);
   out.centre = {};
