@@ -96,9 +96,11 @@ SkinAppearance skin_appearance(const std::vector<std::string>& landmarks, const 
                              std::vector<std::uint8_t>(vertices.size(), skin_label), std::nullopt };
   if (has_mouth)
   {
-    const double radius = double((*corner)[2]) - (*chin)[2];
-    appearance.mouth =
-        RenderBall{ { double((*corner)[0]) - radius - 6e-3, 0, (*corner)[2] }, radius, inside_colour, inside_label };
+    // large enough to be all that is seen through a mouth that is wide open, and behind its front teeth
+    const double height = double((*corner)[2]) - (*chin)[2], radius = 1.55 * height;
+    appearance.mouth = RenderBall{
+      { double((*corner)[0]) - radius - height / 2, 0, (*corner)[2] - height / 5 }, radius, inside_colour, inside_label
+    };
   }
   std::vector<std::uint8_t> part(landmarks.size());
   std::transform(landmarks.begin(), landmarks.end(), part.begin(), label_of_landmark);
@@ -181,6 +183,34 @@ RenderBall socket_of(const RenderBall& eyeball)
 FaceAppearance::FaceAppearance(const Model& model, const SkinState& rest)
     : model_(model), appearance_(skin_appearance(model.landmarks, rest.landmarks, rest.vertices))
 {
+  const auto named = [&](const std::string& name)
+  { return std::find(model.landmarks.begin(), model.landmarks.end(), name) - model.landmarks.begin(); };
+  const auto corner = static_cast<std::size_t>(named("mouth_corner_left"));
+  const std::vector<Eyeball> eyes = eyeballs(model, [](std::size_t) { return RigidTransform(); });
+  const std::vector<BodyShape> bodies = body_shapes(model);
+  for (std::size_t b = 0; b < bodies.size() && b < model.contacts.size(); ++b)
+  {
+    const std::int32_t bone = model.contacts[b].bone;
+    const auto is_ball = [&](const Eyeball& eye) { return static_cast<std::int32_t>(eye.bone) == bone; };
+    if (bodies[b].surface == nullptr || std::any_of(eyes.begin(), eyes.end(), is_ball))
+      continue;
+    TriangleMesh surface = *bodies[b].surface;
+    for (auto& p : surface.vertices)
+      p = model.to_face(p);
+    Body& body = bodies_.emplace_back();
+    body.bone = bone;
+    if (bodies[b].name.compare(0, 5, "teeth") == 0 && corner < model.landmarks.size())
+    {
+      body.mesh = painted_teeth(surface, bone >= 0, rest.landmarks[corner][2]);
+      continue;
+    }
+    body.mesh.triangles = surface.triangles;
+    body.mesh.vertices.reserve(surface.vertices.size());
+    for (const auto& p : surface.vertices)
+      body.mesh.vertices.push_back({ static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]) });
+    body.mesh.colours.assign(surface.vertices.size(), body_colour);
+    body.mesh.labels.assign(surface.vertices.size(), body_label);
+  }
 }
 
 RenderScene FaceAppearance::scene(const SkinState& skin, const Controls& controls) const
@@ -188,32 +218,24 @@ RenderScene FaceAppearance::scene(const SkinState& skin, const Controls& control
   RenderScene scene;
   scene.meshes.push_back(
       { skin.vertices, model_.skin.triangles, skin.normals, appearance_.colours, appearance_.labels });
+  const auto motion = [&](std::size_t bone) { return motion_in_face(model_, controls.bone[bone]); };
   if (appearance_.mouth)
     scene.balls.push_back(*appearance_.mouth);
-  std::vector<bool> is_ball(model_.bones.size(), false);
-  for (const Eyeball& eye :
-       eyeballs(model_, [&](std::size_t bone) { return motion_in_face(model_, controls.bone[bone]); }))
+  for (const Eyeball& eye : eyeballs(model_, motion))
   {
     scene.balls.push_back(socket_of(eye.balls[0]));
     scene.balls.insert(scene.balls.end(), eye.balls.begin(), eye.balls.end());
-    is_ball[eye.bone] = true;
   }
-  const std::vector<BodyShape> bodies = body_shapes(model_);
-  for (std::size_t b = 0; b < bodies.size() && b < model_.contacts.size(); ++b)
+  for (const Body& body : bodies_)
   {
-    const std::int32_t bone = model_.contacts[b].bone;
-    if (bodies[b].surface == nullptr || (bone >= 0 && is_ball[static_cast<std::size_t>(bone)]))
+    RenderMesh& mesh = scene.meshes.emplace_back(body.mesh);
+    if (body.bone < 0)
       continue;
-    const TriangleMesh& surface = *bodies[b].surface;
-    RenderMesh& mesh = scene.meshes.emplace_back();
-    mesh.triangles = surface.triangles;
-    mesh.colours.assign(surface.vertices.size(), body_colour);
-    mesh.labels.assign(surface.vertices.size(), body_label);
-    mesh.vertices.reserve(surface.vertices.size());
-    for (const auto& p : surface.vertices)
+    const RigidTransform pose = motion(static_cast<std::size_t>(body.bone));
+    for (auto& v : mesh.vertices)
     {
-      const std::array<double, 3> now = model_.to_face(bone < 0 ? p : controls.bone[static_cast<std::size_t>(bone)](p));
-      mesh.vertices.push_back({ static_cast<float>(now[0]), static_cast<float>(now[1]), static_cast<float>(now[2]) });
+      const std::array<double, 3> now = pose(std::array<double, 3>{ { double(v[0]), double(v[1]), double(v[2]) } });
+      v = { static_cast<float>(now[0]), static_cast<float>(now[1]), static_cast<float>(now[2]) };
     }
   }
   return scene;

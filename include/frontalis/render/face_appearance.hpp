@@ -49,7 +49,13 @@ std::vector<Eyeball> eyeballs(const Model& model, const std::function<RigidTrans
 /// A dark ball behind an eyeball, which is seen where the lids leave a gap beside it.
 RenderBall socket_of(const RenderBall& eyeball);
 
-/// Shows a model: its skin, its eyeballs, and the bodies that its tissue touches. In the face frame.
+/// A body on which lips rest, drawn as a row of teeth with their gums: painted for teeth of common sizes in the middle
+/// of the body, dark beyond their edges. `surface` at rest, face frame, symmetric about y = 0; `corner_height`: z of
+/// the corners of the mouth at rest [m].
+RenderMesh painted_teeth(const TriangleMesh& surface, bool lower, double corner_height);
+
+/// Shows a model: its skin, its eyeballs, and the bodies that its tissue touches; those whose names begin with "teeth"
+/// are painted as such. In the face frame.
 class FaceAppearance
 {
 public:
@@ -58,8 +64,16 @@ public:
   RenderScene scene(const SkinState& skin, const Controls& controls) const;
 
 private:
+  /// at rest, in the face frame
+  struct Body
+  {
+    RenderMesh mesh;
+    std::int32_t bone = -1;  ///< index into Model::bones; -1: it stands still
+  };
+
   const Model& model_;
   SkinAppearance appearance_;
+  std::vector<Body> bodies_;
 };
 
 }  // namespace frontalis
