@@ -15,6 +15,7 @@ from vtk.util.numpy_support import numpy_to_vtk
 
 SKIN = {"face": (0.86, 0.68, 0.58), "lid_margin": (0.80, 0.52, 0.47), "lips": (0.74, 0.42, 0.40), "mucosa": (0.62, 0.28, 0.28), "mouth": (0.55, 0.22, 0.22),
         "nostril": (0.5, 0.3, 0.26), "conjunctiva": (0.8, 0.5, 0.48), "cut": (0.6, 0.4, 0.35)}
+HAIR = (0.29, 0.20, 0.145)
 IRIS, PUPIL = 5.85e-3, 1.9e-3  # radii [m]
 
 
@@ -149,12 +150,14 @@ def main(surfaces, cage, pictures):
     surfaces, pictures = pathlib.Path(surfaces), pathlib.Path(pictures)
     pictures.mkdir(exist_ok=True)
     parts = {path.stem: read(path)[:2] for path in sorted(surfaces.glob("*.obj"))}
-    skin = parts.pop("skin")
+    skin, hair = parts.pop("skin"), parts.pop("hair")
     colours = skin_colours(*skin, read(cage))
+    hair = actor_of(*hair, HAIR)
     eyes = [eye_of(parts[name][0]) for name in ("eye_left", "eye_right")]
     bones = [actor_of(*parts[name], colour) for name, colour in (("skull", (0.9, 0.86, 0.76)), ("mandible", (0.87, 0.82, 0.70)),
                                                                  ("teeth_upper", (0.97, 0.96, 0.92)), ("teeth_lower", (0.97, 0.96, 0.92)))]
-    others = ("face", "visible", "cut", "mouth", "modiolus_left", "modiolus_right", "eye_left", "eye_right", "skull", "mandible", "teeth_upper", "teeth_lower")
+    others = ("face", "visible", "cut", "mouth", "modiolus_left", "modiolus_right", "eye_left", "eye_right", "skull", "mandible", "teeth_upper", "teeth_lower",
+              "hair_top", "lining", "gums_upper", "gums_lower", "fissure", "septum", "tarsus_upper", "tarsus_lower", "lid_corners", "canthi", "lids")
     muscles = []
     names = [name for name in parts if name not in others and not name.startswith("fat_")]
     kinds = sorted({name.replace("_left", "").replace("_right", "") for name in names})
@@ -163,8 +166,8 @@ def main(surfaces, cage, pictures):
         muscles.append(actor_of(*parts[name], colorsys.hls_to_rgb((0.95 + 0.382 * kind * 0.4) % 1, 0.42 + 0.05 * (kind % 3), 0.55)))
     head = numpy.array([-70.0, 0, -20])
     whole = [(0, 0, head, 150), (40, 3, head, 150), (90, 0, head, 150)]
-    draw([actor_of(*skin, colours)] + eyes, whole, pictures / "skin.png")
-    draw([actor_of(*skin, colours)] + eyes, [(0, 0, numpy.array([0, 31.0, -9]), 32), (0, -10, numpy.array([0, 0, -60.0]), 42),
+    draw([actor_of(*skin, colours), hair] + eyes, whole, pictures / "skin.png")
+    draw([actor_of(*skin, colours), hair] + eyes, [(0, 0, numpy.array([0, 31.0, -9]), 32), (0, -10, numpy.array([0, 0, -60.0]), 42),
                                              (50, 0, numpy.array([0, 0, -60.0]), 45)], pictures / "close.png")
     draw(bones + eyes, whole, pictures / "skull.png")
     draw([actor_of(*skin, (0.86, 0.68, 0.58), 0.22)] + eyes + bones + muscles, whole, pictures / "muscles.png")

@@ -16,8 +16,7 @@ using Point = std::array<float, 3>;
 
 constexpr Point skin_colour{ { 0.87F, 0.66F, 0.55F } }, lip_colour{ { 0.74F, 0.39F, 0.37F } },
     brow_colour{ { 0.25F, 0.17F, 0.12F } }, hair_colour{ { 0.29F, 0.20F, 0.145F } },
-    corner_colour{ { 0.60F, 0.40F, 0.36F } }, teeth_colour{ { 0.93F, 0.91F, 0.84F } },
-    white_colour{ { 0.90F, 0.88F, 0.85F } };
+    corner_colour{ { 0.60F, 0.40F, 0.36F } }, white_colour{ { 0.90F, 0.88F, 0.85F } };
 // Lashes cover the edges of the lids, which are parabolas as seen from the front. Lengths over the eyeball's radius.
 struct Lashes
 {
@@ -138,9 +137,11 @@ SkinAppearance skin_appearance(const std::vector<std::string>& landmarks, const 
                              std::vector<std::uint8_t>(vertices.size(), skin_label), std::nullopt };
   if (has_mouth)
   {
-    const double radius = double((*corner)[2]) - (*chin)[2];
-    appearance.mouth =
-        RenderBall{ { double((*corner)[0]) - radius - 6e-3, 0, (*corner)[2] }, radius, inside_colour, inside_label };
+    // large enough to be all that is seen through a mouth that is wide open, and behind its front teeth
+    const double height = double((*corner)[2]) - (*chin)[2], radius = 1.55 * height;
+    appearance.mouth = RenderBall{
+      { double((*corner)[0]) - radius - height / 2, 0, (*corner)[2] - height / 5 }, radius, inside_colour, inside_label
+    };
   }
   std::vector<std::uint8_t> part(landmarks.size());
   std::transform(landmarks.begin(), landmarks.end(), part.begin(), label_of_landmark);
@@ -279,11 +280,38 @@ std::vector<RenderBall> resting_eyes(const Model& model)
   return balls;
 }
 
+RenderMesh body_at_rest(const Model& model, const Contact& contact)
+{
+  TriangleMesh surface = contact.shape;
+  for (auto& p : surface.vertices)
+    p = model.to_face(p);
+  const auto corner = std::find(model.landmarks.begin(), model.landmarks.end(), "mouth_corner_left");
+  if (contact.name.compare(0, 5, "teeth") == 0 && corner != model.landmarks.end())
+  {
+    const auto landmark = static_cast<std::size_t>(corner - model.landmarks.begin());
+    return painted_teeth(surface, contact.bone >= 0, model.landmark_positions[landmark][2]);
+  }
+  BodyAppearance look = body_appearance(contact.name, contact.points.empty(), surface);
+  RenderMesh mesh;
+  mesh.triangles = std::move(surface.triangles);
+  mesh.colours = std::move(look.colours);
+  mesh.labels.assign(surface.vertices.size(), look.label);
+  mesh.vertices.reserve(surface.vertices.size());
+  for (const auto& p : surface.vertices)
+    mesh.vertices.push_back({ static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]) });
+  return mesh;
+}
+
 FaceAppearance::FaceAppearance(const Model& model, const SkinState& rest)
     : model_(model), appearance_(skin_appearance(model.landmarks, rest.landmarks, rest.vertices, resting_eyes(model)))
 {
+  const std::vector<Eyeball> eyes = eyeballs(model, [](std::size_t) { return RigidTransform(); });
   for (const Contact& contact : model.contacts)
-    bodies_.push_back(body_appearance(contact.name, contact.points.empty(), contact.shape));
+  {
+    const auto is_ball = [&](const Eyeball& eye) { return static_cast<std::int32_t>(eye.bone) == contact.bone; };
+    if (!std::any_of(eyes.begin(), eyes.end(), is_ball))
+      bodies_.push_back({ body_at_rest(model, contact), contact.bone });
+  }
 }
 
 RenderScene FaceAppearance::scene(const SkinState& skin, const Controls& controls) const
@@ -291,33 +319,25 @@ RenderScene FaceAppearance::scene(const SkinState& skin, const Controls& control
   RenderScene scene;
   scene.meshes.push_back(
       { skin.vertices, model_.skin.triangles, skin.normals, appearance_.colours, appearance_.labels });
+  const auto motion = [&](std::size_t bone) { return motion_in_face(model_, controls.bone[bone]); };
   if (appearance_.mouth)
     scene.balls.push_back(*appearance_.mouth);
-  std::vector<bool> is_ball(model_.bones.size(), false);
-  for (const Eyeball& eye :
-       eyeballs(model_, [&](std::size_t bone) { return motion_in_face(model_, controls.bone[bone]); }))
+  for (const Eyeball& eye : eyeballs(model_, motion))
   {
     scene.balls.push_back(socket_of(eye.ball));
     scene.balls.push_back(eye.ball);
     scene.meshes.push_back(eye.iris);
-    is_ball[eye.bone] = true;
   }
-  const std::vector<BodyShape> bodies = body_shapes(model_);
-  for (std::size_t b = 0; b < bodies.size() && b < model_.contacts.size(); ++b)
+  for (const Body& body : bodies_)
   {
-    const std::int32_t bone = model_.contacts[b].bone;
-    if (bodies[b].surface == nullptr || (bone >= 0 && is_ball[static_cast<std::size_t>(bone)]))
+    RenderMesh& mesh = scene.meshes.emplace_back(body.mesh);
+    if (body.bone < 0)
       continue;
-    const TriangleMesh& surface = *bodies[b].surface;
-    RenderMesh& mesh = scene.meshes.emplace_back();
-    mesh.triangles = surface.triangles;
-    mesh.colours = bodies_[b].colours;
-    mesh.labels.assign(surface.vertices.size(), bodies_[b].label);
-    mesh.vertices.reserve(surface.vertices.size());
-    for (const auto& p : surface.vertices)
+    const RigidTransform pose = motion(static_cast<std::size_t>(body.bone));
+    for (auto& v : mesh.vertices)
     {
-      const std::array<double, 3> now = model_.to_face(bone < 0 ? p : controls.bone[static_cast<std::size_t>(bone)](p));
-      mesh.vertices.push_back({ static_cast<float>(now[0]), static_cast<float>(now[1]), static_cast<float>(now[2]) });
+      const std::array<double, 3> now = pose(std::array<double, 3>{ { double(v[0]), double(v[1]), double(v[2]) } });
+      v = { static_cast<float>(now[0]), static_cast<float>(now[1]), static_cast<float>(now[2]) };
     }
   }
   return scene;

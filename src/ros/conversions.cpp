@@ -50,21 +50,17 @@ std_msgs::ColorRGBA opaque(const std::array<float, 3>& colour)
   return out;
 }
 
-/// Colours of a surface at rest, lit as the skin is, so that the two join without a seam.
-SkinColours shaded(const Model& model, const TriangleMesh& surface, const SkinColours& natural)
+/// Colours of a mesh at rest in the face frame, lit as the skin is, so that the two join without a seam.
+SkinColours shaded(const RenderMesh& mesh)
 {
-  RenderMesh mesh;
-  mesh.triangles = surface.triangles;
-  for (const auto& vertex : surface.vertices)
-  {
-    const auto p = model.to_face(vertex);
-    mesh.vertices.push_back({ { static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]) } });
-  }
   SkinState state;
   state.normals = normals_of(mesh);
-  state.vertices = std::move(mesh.vertices);
+  state.vertices = mesh.vertices;
+  TriangleMesh surface;
+  surface.triangles = mesh.triangles;
+  surface.vertices.resize(mesh.vertices.size());
   SkinColours out;
-  SkinShading(surface, natural).colours(state, {}, out);
+  SkinShading(surface, mesh.colours).colours(state, {}, out);
   return out;
 }
 
@@ -249,8 +245,12 @@ geometry_msgs::Wrench to_wrench(const Model& model, const BodyShape& shape, cons
 visualization_msgs::MarkerArray to_bodies(const Model& model, const std::string& face_frame)
 {
   visualization_msgs::MarkerArray out;
-  for (const BodyShape& shape : body_shapes(model))
+  // the shapes are those of the contacts, in their order
+  const std::vector<BodyShape> shapes = body_shapes(model);
+  for (std::size_t b = 0; b < shapes.size(); ++b)
   {
+    const BodyShape& shape = shapes[b];
+    const RenderMesh mesh = body_at_rest(model, model.contacts[b]);
     visualization_msgs::Marker& marker = out.markers.emplace_back();
     marker.header.frame_id = body_frame(face_frame, shape);
     marker.frame_locked = true;
@@ -259,24 +259,19 @@ visualization_msgs::MarkerArray to_bodies(const Model& model, const std::string&
     marker.action = visualization_msgs::Marker::ADD;
     marker.pose.orientation.w = 1;
     marker.scale.x = marker.scale.y = marker.scale.z = 1;
-    // the shapes are those of the contacts, in their order
-    const bool only_shown = model.contacts[out.markers.size() - 1].points.empty();
-    const BodyAppearance look = body_appearance(shape.name, only_shown, *shape.surface);
-    marker.color.r = look.colour[0];
-    marker.color.g = look.colour[1];
-    marker.color.b = look.colour[2];
-    marker.color.a = 1;
-    const SkinColours colours = only_shown ? shaded(model, *shape.surface, look.colours) : SkinColours();
+    marker.color = opaque(mesh.colours.front());
+    const bool is_painted = std::any_of(mesh.colours.begin(), mesh.colours.end(),
+                                        [&](const auto& colour) { return colour != mesh.colours.front(); });
+    const SkinColours colours = is_painted || model.contacts[b].points.empty() ? shaded(mesh) : SkinColours();
     const auto centre = model.to_face(shape.centre);
-    for (const auto& triangle : shape.surface->triangles)
+    for (const auto& triangle : mesh.triangles)
       for (const auto vertex : triangle)
       {
-        auto p = model.to_face(shape.surface->vertices[vertex]);
-        for (std::size_t axis = 0; axis < 3; ++axis)
-          p[axis] -= centre[axis];
-        set(marker.points.emplace_back(), p);
+        const auto& v = mesh.vertices[static_cast<std::size_t>(vertex)];
+        set(marker.points.emplace_back(),
+            std::array<double, 3>{ { v[0] - centre[0], v[1] - centre[1], v[2] - centre[2] } });
         if (!colours.empty())
-          marker.colors.push_back(opaque(colours[vertex]));
+          marker.colors.push_back(opaque(colours[static_cast<std::size_t>(vertex)]));
       }
   }
   return out;

@@ -39,12 +39,13 @@ RenderMesh mesh_of_body(const visualization_msgs::Marker& marker)
   }
   for (std::size_t c = 0; c + 2 < corners.size(); c += 3)
     mesh.triangles.push_back({ corners[c], corners[c + 1], corners[c + 2] });
-  // only what is shown without touching has colours of its own, in which rviz shows it lit
+  // What is shown without touching has colours of its own, in which rviz shows it lit; so have painted teeth.
+  const bool only_shown = !marker.colors.empty() && marker.ns.compare(0, 5, "teeth") != 0;
   TriangleMesh surface;
   surface.triangles = mesh.triangles;
   for (const auto& p : mesh.vertices)
     surface.vertices.push_back({ p[0], p[1], p[2] });
-  const BodyAppearance look = body_appearance(marker.ns, !marker.colors.empty(), surface);
+  const BodyAppearance look = body_appearance(marker.ns, only_shown, surface);
   mesh.colours = look.colours;
   mesh.labels.assign(mesh.vertices.size(), look.label);
   return mesh;

@@ -11,6 +11,8 @@
 namespace frontalis
 {
 
+constexpr std::array<float, 3> teeth_colour{ { 0.93F, 0.91F, 0.84F } };
+
 /// Colours of a body's vertices, and its label: of one that tissue touches those of teeth, of one that is only shown
 /// those of skin, or of hair if it is named so. Hair gets thinner towards the open border of its surface.
 struct BodyAppearance
@@ -62,7 +64,16 @@ std::vector<RenderBall> resting_eyes(const Model& model);
 /// A dark ball behind an eyeball, which is seen where the lids leave a gap beside it.
 RenderBall socket_of(const RenderBall& eyeball);
 
-/// Shows a model: its skin, its eyeballs, and the bodies that its tissue touches. In the face frame.
+/// A body on which lips rest, drawn as a row of teeth with their gums: painted for teeth of common sizes in the middle
+/// of the body, dark beyond their edges. `surface` at rest, face frame, symmetric about y = 0; `corner_height`: z of
+/// the corners of the mouth at rest [m].
+RenderMesh painted_teeth(const TriangleMesh& surface, bool lower, double corner_height);
+
+/// A body at rest, in the face frame: painted as teeth if its name begins with "teeth" and the model has the landmark
+/// mouth_corner_left, else with its body_appearance().
+RenderMesh body_at_rest(const Model& model, const Contact& contact);
+
+/// Shows a model: its skin, its eyeballs and its bodies. In the face frame.
 class FaceAppearance
 {
 public:
@@ -71,9 +82,16 @@ public:
   RenderScene scene(const SkinState& skin, const Controls& controls) const;
 
 private:
+  /// at rest, in the face frame
+  struct Body
+  {
+    RenderMesh mesh;
+    std::int32_t bone = -1;  ///< index into Model::bones; -1: it stands still
+  };
+
   const Model& model_;
   SkinAppearance appearance_;
-  std::vector<BodyAppearance> bodies_;  ///< of Model::contacts
+  std::vector<Body> bodies_;
 };
 
 }  // namespace frontalis

@@ -24,26 +24,30 @@ constexpr double margin = 1.08;   // size of the picture divided by that of the 
 
 Portrait::Portrait(const Model& model, const SkinState& rest) : appearance_(model, rest)
 {
+  // what the picture holds, to the right and upwards: the skin, and the rest of the head without the neck
   std::array<double, 2> low{ 1, 1 }, high{ -1, -1 };
+  const auto hold = [&](double x, double y, double z)
+  {
+    const double across = y * std::cos(azimuth) - x * std::sin(azimuth);
+    low = { std::min(low[0], across), std::min(low[1], z) };
+    high = { std::max(high[0], across), std::max(high[1], z) };
+  };
   for (const auto& v : rest.vertices)
-    for (std::size_t axis = 0; axis < 2; ++axis)
-    {
-      low[axis] = std::min(low[axis], double(v[axis + 1]));
-      high[axis] = std::max(high[axis], double(v[axis + 1]));
-    }
-  // the rest of the head, without the neck
+    hold(v[0], v[1], v[2]);
   for (const Contact& contact : model.contacts)
-    for (const auto& v : contact.points.empty() ? contact.shape.vertices : std::vector<std::array<double, 3>>())
-    {
-      const std::array<double, 3> p = model.to_face(v);
-      low[0] = std::min(low[0], p[1]);
-      high[0] = std::max(high[0], p[1]);
-      high[1] = std::max(high[1], p[2]);
-    }
-  const std::array<double, 3> middle{ 0, 0, 0.5 * (low[1] + high[1]) - 4e-3 };
+    if (contact.points.empty())
+      for (const auto& v : contact.shape.vertices)
+      {
+        const auto [x, y, z] = model.to_face(v);
+        hold(x, y, std::max(z, low[1]));
+      }
+  const double aside = 0.5 * (low[0] + high[0]);
+  const std::array<double, 3> middle{ -aside * std::sin(azimuth), aside * std::cos(azimuth),
+                                      0.5 * (low[1] + high[1]) - 4e-3 };
   const double pixel = margin * std::max((high[0] - low[0]) / width, (high[1] - low[1]) / height);
   camera_ = camera_with(width, height, 2 * std::atan(0.5 * width * pixel / distance));
-  camera_.to_camera = look_at({ distance * std::cos(azimuth), distance * std::sin(azimuth), middle[2] }, middle);
+  camera_.to_camera = look_at(
+      { middle[0] + distance * std::cos(azimuth), middle[1] + distance * std::sin(azimuth), middle[2] }, middle);
 }
 
 std::vector<std::uint8_t> Portrait::draw(const SkinState& skin, const Controls& controls) const

@@ -21,7 +21,7 @@ struct HairLayer
 };
 constexpr HairLayer hair_layers[] = { { "hair", 3.5e-3, 14e-3 }, { "hair_top", 9e-3, 34e-3 } };
 constexpr double hair_margin = 3e-3;    // [m] by which the surface of hair goes on, under the skin, beyond the hairline
-constexpr double hair_sink = 0.3;       // depth of that margin over the distance from the hairline
+constexpr double hair_sink = 0.9;       // depth of that margin over the distance from the hairline
 constexpr double hairline_wave = 1e-3;  // [m] by which locks shift the hairline
 constexpr double lock_height = 0.12;    // height of a lock over the thickness of the hair
 
@@ -83,7 +83,7 @@ TriangleMesh hair_on(const TriangleMesh& skin,
       if (&layer == hair_layers)
       {
         covered[v] = deep > -hair_margin;
-        height += hair_sink * std::clamp(deep, -hair_margin, 1e-3);
+        height += hair_sink * std::clamp(deep, -hair_margin, 0.0);
       }
     }
     mesh.vertices[v] = to_array(p + height * normals[v]);

@@ -1,0 +1,95 @@
+#include "frontalis/render/face_appearance.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+namespace frontalis
+{
+namespace
+{
+
+constexpr std::array<float, 3> gum_colour{ { 0.78F, 0.47F, 0.45F } };
+
+// Rows of teeth, from the midline: the borders between teeth along the row, and the height of the cutting edges and of
+// the gums' rim above the corners of the mouth (estimates from textbooks' dimensions of teeth) [m].
+struct Row
+{
+  std::array<double, 8> borders;
+  double edge, rim;
+};
+constexpr Row upper_row{ { 0, 8.6e-3, 15.2e-3, 23e-3, 30e-3, 36.8e-3, 47e-3, 57e-3 }, -1e-3, 9.3e-3 };
+constexpr Row lower_row{ { 0, 5.4e-3, 11.3e-3, 18.2e-3, 25.2e-3, 32.3e-3, 43.3e-3, 54e-3 }, -2.7e-3, -11.7e-3 };
+constexpr double papilla = 1.8e-3;  // [m] by which the gums reach farther between two teeth
+constexpr double groove = 0.6e-3;   // [m] beside the border of two teeth in which it gets darker
+constexpr float shade = 0.6F;       // of the border itself
+constexpr double arch_depth = 0.7;  // of the arch over half of its width
+
+// Halves all edges of a mesh, so that colours of vertices can show what is smaller than its triangles.
+void halve(RenderMesh& mesh)
+{
+  std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> known;
+  const auto middle = [&](std::int32_t a, std::int32_t b)
+  {
+    const auto [found, is_new] = known.try_emplace(std::minmax(a, b), static_cast<std::int32_t>(mesh.vertices.size()));
+    if (is_new)
+    {
+      const auto p = mesh.vertices[static_cast<std::size_t>(a)], q = mesh.vertices[static_cast<std::size_t>(b)];
+      mesh.vertices.push_back({ (p[0] + q[0]) / 2, (p[1] + q[1]) / 2, (p[2] + q[2]) / 2 });
+    }
+    return found->second;
+  };
+  std::vector<std::array<std::int32_t, 3>> finer;
+  finer.reserve(4 * mesh.triangles.size());
+  for (const auto& [a, b, c] : mesh.triangles)
+  {
+    const std::int32_t ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
+    finer.insert(finer.end(), { { a, ab, ca }, { ab, b, bc }, { ca, bc, c }, { ab, bc, ca } });
+  }
+  mesh.triangles = std::move(finer);
+}
+
+}  // namespace
+
+RenderMesh painted_teeth(const TriangleMesh& surface, bool lower, double corner_height)
+{
+  RenderMesh mesh;
+  mesh.triangles = surface.triangles;
+  double half_width = 0, front = -1;
+  mesh.vertices.reserve(surface.vertices.size());
+  for (const auto& p : surface.vertices)
+  {
+    mesh.vertices.push_back({ static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]) });
+    half_width = std::max(half_width, std::abs(p[1]));
+    front = std::max(front, p[0]);
+  }
+  halve(mesh);
+  halve(mesh);
+  const Row& row = lower ? lower_row : upper_row;
+  const double up = lower ? -1 : 1, depth = arch_depth * half_width;
+  mesh.colours.reserve(mesh.vertices.size());
+  mesh.labels.reserve(mesh.vertices.size());
+  for (const auto& p : mesh.vertices)
+  {
+    // length along an elliptic arch from its front, whose line element is about its mean over the angle
+    const double angle = std::atan2(std::abs(p[1]) / half_width, (p[0] - front + depth) / depth);
+    const double along = (half_width + depth) / 2 * angle + (half_width - depth) / 4 * std::sin(2 * angle);
+    const auto next = std::upper_bound(row.borders.begin() + 1, row.borders.end() - 1, along);
+    const double width = *next - *(next - 1), from_border = std::min(along - *(next - 1), *next - along);
+    const double aside = std::clamp(1 - 2 * from_border / width, 0.0, 1.0);  // 0 in the middle of the tooth
+    const double height = up * (p[2] - corner_height);
+    const bool is_gum = height > up * row.rim - papilla * aside * aside;
+    const double light = is_gum ? 1 : shade + (1 - shade) * std::clamp(from_border / groove, 0.0, 1.0);
+    std::array<float, 3> colour = is_gum ? gum_colour : teeth_colour;
+    for (float& c : colour)
+      c *= static_cast<float>(light);
+    // the body goes on beyond the teeth, where there is nothing to be seen
+    const bool is_beyond = height < up * row.edge + 0.6e-3 * std::pow(aside, 4);
+    mesh.colours.push_back(is_beyond ? inside_colour : colour);
+    mesh.labels.push_back(is_beyond ? inside_label : body_label);
+  }
+  return mesh;
+}
+
+}  // namespace frontalis

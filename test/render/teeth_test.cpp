@@ -1,0 +1,70 @@
+#include "frontalis/render/face_appearance.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace frontalis
+{
+namespace
+{
+
+// A wall of 60 x 40 mm, bent around the mouth to an arch of 20 mm depth, with its middle at the corners of the mouth.
+TriangleMesh arch()
+{
+  constexpr int columns = 60, rows = 40;
+  TriangleMesh mesh;
+  for (int r = 0; r <= rows; ++r)
+    for (int c = 0; c <= columns; ++c)
+    {
+      const double y = -30e-3 + 1e-3 * c;
+      mesh.vertices.push_back({ 20e-3 * std::sqrt(1 - std::pow(y / 30.01e-3, 2)), y, -20e-3 + 1e-3 * r });
+    }
+  for (int r = 0; r < rows; ++r)
+    for (int c = 0; c < columns; ++c)
+    {
+      const std::int32_t first = r * (columns + 1) + c, above = first + columns + 1;
+      mesh.triangles.push_back({ first, first + 1, above });
+      mesh.triangles.push_back({ first + 1, above + 1, above });
+    }
+  return mesh;
+}
+
+// What a painted row shows at a place of its middle part.
+std::pair<std::array<float, 3>, std::uint8_t> at(const RenderMesh& mesh, double y, double z)
+{
+  std::size_t closest = 0;
+  double least = 1;
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
+    if (const double away = std::hypot(mesh.vertices[v][1] - y, mesh.vertices[v][2] - z); away < least)
+    {
+      least = away;
+      closest = v;
+    }
+  return { mesh.colours[closest], mesh.labels[closest] };
+}
+
+TEST(Teeth, are_painted_between_gums_and_their_edges)
+{
+  const TriangleMesh surface = arch();
+  for (const bool lower : { false, true })
+  {
+    const RenderMesh mesh = painted_teeth(surface, lower, 0);
+    ASSERT_EQ(mesh.colours.size(), mesh.vertices.size());
+    const double up = lower ? -1 : 1;
+    const auto tooth = at(mesh, lower ? 2.7e-3 : 4.3e-3, up * 6e-3);
+    EXPECT_EQ(tooth.first, teeth_colour);
+    EXPECT_EQ(tooth.second, body_label);
+    // between the two middle teeth it is darker, as on both sides of the midline
+    EXPECT_LT(at(mesh, 0, up * 6e-3).first[0], 0.7F * teeth_colour[0]);
+    EXPECT_EQ(at(mesh, 4e-3, up * 6e-3), at(mesh, -4e-3, up * 6e-3));
+    // gums are red, and nothing is seen beyond the edges of the teeth
+    const auto gum = at(mesh, 4e-3, up * 15e-3);
+    EXPECT_GT(gum.first[0], 1.4F * gum.first[1]);
+    EXPECT_EQ(gum.second, body_label);
+    EXPECT_EQ(at(mesh, 4e-3, -up * 5e-3).second, inside_label);
+  }
+}
+
+}  // namespace
+}  // namespace frontalis
