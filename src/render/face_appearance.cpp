@@ -282,8 +282,8 @@ std::vector<RenderBall> resting_eyes(const Model& model)
 FaceAppearance::FaceAppearance(const Model& model, const SkinState& rest)
     : model_(model), appearance_(skin_appearance(model.landmarks, rest.landmarks, rest.vertices, resting_eyes(model)))
 {
-  for (const Contact& contact : model.contacts)
-    bodies_.push_back(body_appearance(contact.name, contact.points.empty(), contact.shape));
+  for (const BodyShape& shape : body_shapes(model))
+    bodies_.push_back(body_appearance(shape.name, shape.only_shown, *shape.surface));
 }
 
 RenderScene FaceAppearance::scene(const SkinState& skin, const Controls& controls) const

@@ -264,14 +264,12 @@ visualization_msgs::MarkerArray to_bodies(const Model& model, const std::string&
     marker.action = visualization_msgs::Marker::ADD;
     marker.pose.orientation.w = 1;
     marker.scale.x = marker.scale.y = marker.scale.z = 1;
-    // the shapes are those of the contacts, in their order
-    const bool only_shown = model.contacts[out.markers.size() - 2].points.empty();
-    const BodyAppearance look = body_appearance(shape.name, only_shown, *shape.surface);
+    const BodyAppearance look = body_appearance(shape.name, shape.only_shown, *shape.surface);
     marker.color.r = look.colour[0];
     marker.color.g = look.colour[1];
     marker.color.b = look.colour[2];
     marker.color.a = 1;
-    const SkinColours colours = only_shown ? shaded(model, *shape.surface, look.colours) : SkinColours();
+    const SkinColours colours = shape.only_shown ? shaded(model, *shape.surface, look.colours) : SkinColours();
     const auto centre = model.to_face(shape.centre);
     for (const auto& triangle : shape.surface->triangles)
       for (const auto vertex : triangle)

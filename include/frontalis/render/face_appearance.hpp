@@ -73,7 +73,7 @@ public:
 private:
   const Model& model_;
   SkinAppearance appearance_;
-  std::vector<BodyAppearance> bodies_;  ///< of Model::contacts
+  std::vector<BodyAppearance> bodies_;  ///< of body_shapes()
 };
 
 }  // namespace frontalis
