@@ -1,6 +1,6 @@
 #include "cli/reactions.hpp"
 
-#include "frontalis/model/effects.hpp"
+#include "frontalis/model/body_shape.hpp"
 #include "frontalis/study/plot.hpp"
 
 #include <fmt/core.h>
@@ -9,42 +9,32 @@
 
 namespace frontalis
 {
-namespace
-{
-
-/// Whether tissue touches a body: others are only shown.
-bool is_touched(const Model& model, std::size_t body)
-{
-  return body >= model.contacts.size() || !model.contacts[body].points.empty();
-}
-
-}  // namespace
 
 void print_reactions(const Model& model, const std::vector<BodyFrame>& bodies)
 {
-  const std::vector<TouchedBody> touched = touched_bodies(model);
+  const std::vector<BodyShape> shapes = body_shapes(model);
   for (std::size_t c = 0; c < bodies.size(); ++c)
   {
-    if (!is_touched(model, c))
+    if (shapes[c].only_shown)
       continue;
     const auto& [force, moment] = bodies[c].reaction;
     fmt::print(
         "reaction           {}: {:+.4g} N forward, {:+.4g} N left, {:+.4g} N up; moment {:+.4g}, {:+.4g}, {:+.4g} "
         "N m\n",
-        touched[c].name, force[0], force[1], force[2], moment[0], moment[1], moment[2]);
+        shapes[c].name, force[0], force[1], force[2], moment[0], moment[1], moment[2]);
   }
 }
 
 std::string reaction_rows(const Model& model, int frame, double time, const std::vector<BodyFrame>& bodies)
 {
   std::string rows;
-  const std::vector<TouchedBody> touched = touched_bodies(model);
+  const std::vector<BodyShape> shapes = body_shapes(model);
   for (std::size_t c = 0; c < bodies.size(); ++c)
   {
-    if (!is_touched(model, c))
+    if (shapes[c].only_shown)
       continue;
     const auto& [force, moment] = bodies[c].reaction;
-    rows += fmt::format("{},{:.6f},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", frame, time, touched[c].name,
+    rows += fmt::format("{},{:.6f},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", frame, time, shapes[c].name,
                         force[0], force[1], force[2], moment[0], moment[1], moment[2]);
   }
   return rows;
@@ -63,12 +53,12 @@ void ReactionPlot::write() const
   plot.x_label = "simulated time [s]";
   plot.y_label = "force [N]";
   plot.key = "below";
-  const std::vector<TouchedBody> touched = touched_bodies(model_);
-  for (std::size_t c = 0; c < touched.size(); ++c)
+  const std::vector<BodyShape> shapes = body_shapes(model_);
+  for (std::size_t c = 0; c < shapes.size(); ++c)
   {
-    if (!is_touched(model_, c))
+    if (shapes[c].only_shown)
       continue;
-    const std::string& name = touched[c].name;
+    const std::string& name = shapes[c].name;
     Plot::Curve curves[] = { { name + ": magnitude", {}, {}, Plot::Style::strong },
                              { "forward", {}, {}, Plot::Style::line },
                              { "left", {}, {}, Plot::Style::line },

@@ -262,7 +262,7 @@ visualization_msgs::MarkerArray to_bodies(const Model& model, const std::string&
     marker.color = opaque(mesh.colours.front());
     const bool is_painted = std::any_of(mesh.colours.begin(), mesh.colours.end(),
                                         [&](const auto& colour) { return colour != mesh.colours.front(); });
-    const SkinColours colours = is_painted || model.contacts[b].points.empty() ? shaded(mesh) : SkinColours();
+    const SkinColours colours = is_painted || shape.only_shown ? shaded(mesh) : SkinColours();
     const auto centre = model.to_face(shape.centre);
     for (const auto& triangle : mesh.triangles)
       for (const auto vertex : triangle)

@@ -259,8 +259,8 @@ void FacePublisher::publish_caption(const std::string& text, const std::string& 
     const auto [lowest, highest] = std::minmax_element(rest_.begin(), rest_.end(), below);
     lower = (*lowest)[2];
     upper = (*highest)[2];
-    for (const Contact& contact : model_->contacts)
-      for (const auto& vertex : contact.shape.vertices)
+    for (const BodyShape& shape : body_shapes(*model_))
+      for (const auto& vertex : shape.surface->vertices)
         upper = std::max(upper, static_cast<float>(model_->to_face(vertex)[2]));
   }
   const double line = 0.045 * double(upper - lower);

@@ -12,6 +12,7 @@ struct BodyShape
   std::string frame;                      ///< name of its frame, below the face frame: body/NAME or bone/NAME
   std::array<double, 3> centre;           ///< origin of that frame at rest, local [m]
   const TriangleMesh* surface = nullptr;  ///< surface at rest, local [m], owned by the model; may be null or empty
+  bool only_shown = false;                ///< whether no tissue touches it
 };
 /// The shapes of touched_bodies(model), in the same order.
 std::vector<BodyShape> body_shapes(const Model& model);

@@ -1,5 +1,6 @@
 #include "frontalis/study/portrait.hpp"
 
+#include "frontalis/model/body_shape.hpp"
 #include "frontalis/study/plot.hpp"
 
 #include <fmt/format.h>
@@ -34,9 +35,9 @@ Portrait::Portrait(const Model& model, const SkinState& rest) : appearance_(mode
   };
   for (const auto& v : rest.vertices)
     hold(v[0], v[1], v[2]);
-  for (const Contact& contact : model.contacts)
-    if (contact.points.empty())
-      for (const auto& v : contact.shape.vertices)
+  for (const BodyShape& shape : body_shapes(model))
+    if (shape.only_shown)
+      for (const auto& v : shape.surface->vertices)
       {
         const auto [x, y, z] = model.to_face(v);
         hold(x, y, std::max(z, low[1]));
