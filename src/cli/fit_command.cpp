@@ -168,7 +168,7 @@ void add_calibrate_command(CLI::App& app)
       ->required();
   command->add_option("-o,--output", options->output, "file to write the answer to (YAML), as --actuators takes it");
   command->add_option("--hold-out", options->hold_out, "hold out one in so many poses, to test the answer (4; 0: none)")
-      ->check(CLI::Range(0, 1000));
+      ->check(CLI::Range(2, 1000) | CLI::IsMember({ 0 }));
   options->settings.runs = 1;
   command->get_option("--runs")->description("simulations of every pose that correct the answer (1; 0: none)");
   command->callback([options] { calibrate_robot(*options); });

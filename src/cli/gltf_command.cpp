@@ -162,14 +162,16 @@ std::vector<RenderMesh> meshes_of(const RenderScene& scene)
 {
   std::vector<RenderMesh> meshes = scene.meshes;
   std::transform(scene.balls.begin(), scene.balls.end(), std::back_inserter(meshes), mesh_of);
+  // viewers would draw a mesh without normals as flat triangles
+  for (RenderMesh& mesh : meshes)
+    if (mesh.normals.empty())
+      mesh.normals = normals_of(mesh);
   return meshes;
 }
 
 Json primitive_of(Glb& glb, RenderMesh mesh)
 {
-  Json attributes{ { "POSITION", glb.add(turned(mesh.vertices)) } };
-  if (!mesh.normals.empty())
-    attributes["NORMAL"] = glb.add(turned(mesh.normals));
+  Json attributes{ { "POSITION", glb.add(turned(mesh.vertices)) }, { "NORMAL", glb.add(turned(mesh.normals)) } };
   // Colours of glTF are linear.
   for (auto& colour : mesh.colours)
     for (float& channel : colour)
@@ -210,6 +212,7 @@ void write_gltf(const GltfOptions& options)
   const std::vector<RenderMesh> rest = meshes_of(appearance.scene(face.rest(), rest_controls(*model)));
   Glb glb;
   Json primitives = Json::array();
+  std::vector<int> zeros(rest.size(), -1);  // accessor of as many zeros as each mesh has vertices
   for (const RenderMesh& mesh : rest)
     primitives.push_back(primitive_of(glb, mesh));
 
@@ -229,10 +232,17 @@ void write_gltf(const GltfOptions& options)
     }
     for (std::size_t m = 0; m < rest.size(); ++m)
     {
-      Json target{ { "POSITION", glb.add(turned(difference(now[m].vertices, rest[m].vertices))) } };
-      if (!rest[m].normals.empty())
-        target["NORMAL"] = glb.add(turned(difference(now[m].normals, rest[m].normals)));
-      primitives[m]["targets"].push_back(target);
+      // the accessor of a mesh that never moved is shared by all targets
+      const auto moved = [&](const Points& from, const Points& to, int& zeros)
+      {
+        if (from != to)
+          return glb.add(turned(difference(to, from)));
+        if (zeros < 0)
+          zeros = glb.add(Points(from.size()));
+        return zeros;
+      };
+      primitives[m]["targets"].push_back({ { "POSITION", moved(rest[m].vertices, now[m].vertices, zeros[m]) },
+                                           { "NORMAL", moved(rest[m].normals, now[m].normals, zeros[m]) } });
     }
   }
   progress.clear();

@@ -6,6 +6,7 @@
 
 #include <fmt/core.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <utility>
@@ -31,6 +32,12 @@ Movie::Movie(std::string path, double frame_rate, const Model& model)
 {
   if (std::filesystem::path(path_).extension() == ".gif")
   {
+    // GIF counts hundredths of a second per frame.
+    if (const double hundredths = 100 / frame_rate; std::abs(hundredths - std::round(hundredths)) > 1e-6)
+      throw Error(
+          fmt::format("--movie {}: a GIF cannot have {:g} frames per second; give a --frame-rate that divides "
+                      "100, such as 20, 25 or 50, or a folder for the frames",
+                      path_, frame_rate));
     if (std::system("command -v convert >/dev/null 2>&1") != 0)
       throw Error(
           "--movie " + path_ +
@@ -39,6 +46,7 @@ Movie::Movie(std::string path, double frame_rate, const Model& model)
     std::filesystem::remove_all(folder_);
   }
   make_folder(folder_);
+  remove_files(folder_, R"(frame_[0-9]{4,}\.png)");
 }
 
 void Movie::add(const SkinState& skin, const Controls& controls)

@@ -4,6 +4,7 @@
 #include "cli/progress.hpp"
 
 #include "frontalis/error.hpp"
+#include "frontalis/model/content_hash.hpp"
 #include "frontalis/model/model_file.hpp"
 #include "frontalis/runner/named_controls.hpp"
 #include "frontalis/solver/rest_shape.hpp"
@@ -95,6 +96,10 @@ void change_rest(const RestOptions& options)
       add_creases(model, posed(face, *before, pose, options.seconds), options.set);
     fmt::print("creases  {:g} of the folds of {} stay\n", options.set, fmt::join(options.creases, ", "));
   }
+  // what is kept for the model that this one was made of, such as its influence, does not hold for it
+  if (!model.scene_hash.empty())
+    model.scene_hash = content_hash(fmt::format("{} {} {} {} {}", before->scene_hash, options.neutral, options.set,
+                                                fmt::join(options.creases, ","), options.seconds));
   write_model(model, options.file);
   fmt::print("written  {}\n", options.file);
 }

@@ -11,8 +11,6 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <filesystem>
-#include <regex>
 #include <utility>
 #include <vector>
 
@@ -237,9 +235,11 @@ std::string json_of(const Model& model, const RunSummary& summary)
   if (summary.ledger)
     for (const auto& [name, joules] : energies_of(*summary.ledger))
       add({ { fmt::format("ledger_{}_J", name), joules } });
+  const std::vector<BodyShape> shapes = body_shapes(model);
   for (std::size_t c = 0; c < summary.bodies.size(); ++c)
-    json["reactions"][touched_bodies(model)[c].name] = { { "force_N", summary.bodies[c].reaction.force },
-                                                         { "moment_Nm", summary.bodies[c].reaction.moment } };
+    if (!shapes[c].only_shown)
+      json["reactions"][shapes[c].name] = { { "force_N", summary.bodies[c].reaction.force },
+                                            { "moment_Nm", summary.bodies[c].reaction.moment } };
   if (summary.wrinkles)
     json["wrinkles"] = json_of(*summary.wrinkles);
   if (const auto& guard = summary.guard)
@@ -261,13 +261,7 @@ FrameFolder::FrameFolder(std::string path, const Model& model, bool vtp)
       table_("frame,time_s,landmark,x_m,y_m,z_m,forward_mm,left_mm,up_mm\n")
 {
   make_folder(path_);
-  const std::regex ours(R"((skin_[0-9]{4,}\.(ply|vtp)|skin\.pvd|landmarks\.csv|reactions\.csv|run\.json)(\.partial)?)");
-  std::vector<std::filesystem::path> earlier;
-  for (const auto& entry : std::filesystem::directory_iterator(path_))
-    if (entry.is_regular_file() && std::regex_match(entry.path().filename().string(), ours))
-      earlier.push_back(entry.path());
-  for (const std::filesystem::path& file : earlier)
-    std::filesystem::remove(file);
+  remove_files(path_, R"((skin_[0-9]{4,}\.(ply|vtp)|skin\.pvd|landmarks\.csv|reactions\.csv|run\.json)(\.partial)?)");
 }
 
 void FrameFolder::add(double time, const SkinState& skin, const std::vector<BodyFrame>& bodies)
@@ -296,7 +290,7 @@ void FrameFolder::add(double time, const SkinState& skin, const std::vector<Body
 void FrameFolder::finish(const std::string& summary)
 {
   write_text(path_ + "/landmarks.csv", table_);
-  if (!touched_bodies(model_).empty())
+  if (!reactions_.empty())
     write_text(path_ + "/reactions.csv", reaction_heading + reactions_);
   if (vtp_)
     write_text(path_ + "/skin.pvd", "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\">\n<Collection>\n" + series_ +

@@ -144,7 +144,8 @@ std::vector<BodyShape> body_shapes(const Model& model)
 {
   std::vector<BodyShape> shapes;
   for (const Contact& contact : model.contacts)
-    shapes.push_back({ contact.name, "body/" + contact.name, contact.centre, &contact.shape, contact.points.empty() });
+    shapes.push_back(
+        { contact.name, "body/" + contact.name, contact.centre, &contact.shape, contact.points.empty(), contact.bone });
   return shapes;
 }
 

@@ -1,6 +1,5 @@
 #include "frontalis/render/face_appearance.hpp"
 
-#include "frontalis/model/body_shape.hpp"
 #include "frontalis/runner/named_controls.hpp"
 
 #include <algorithm>
@@ -280,18 +279,18 @@ std::vector<RenderBall> resting_eyes(const Model& model)
   return balls;
 }
 
-RenderMesh body_at_rest(const Model& model, const Contact& contact)
+RenderMesh body_at_rest(const Model& model, const BodyShape& body)
 {
-  TriangleMesh surface = contact.shape;
+  TriangleMesh surface = *body.surface;
   for (auto& p : surface.vertices)
     p = model.to_face(p);
   const auto corner = std::find(model.landmarks.begin(), model.landmarks.end(), "mouth_corner_left");
-  if (contact.name.compare(0, 5, "teeth") == 0 && corner != model.landmarks.end())
+  if (body.name.compare(0, 5, "teeth") == 0 && corner != model.landmarks.end())
   {
     const auto landmark = static_cast<std::size_t>(corner - model.landmarks.begin());
-    return painted_teeth(surface, contact.bone >= 0, model.landmark_positions[landmark][2]);
+    return painted_teeth(surface, body.bone >= 0, model.to_face(model.landmark_positions[landmark])[2]);
   }
-  BodyAppearance look = body_appearance(contact.name, contact.points.empty(), surface);
+  BodyAppearance look = body_appearance(body.name, body.only_shown, surface);
   RenderMesh mesh;
   mesh.triangles = std::move(surface.triangles);
   mesh.colours = std::move(look.colours);
@@ -306,11 +305,11 @@ FaceAppearance::FaceAppearance(const Model& model, const SkinState& rest)
     : model_(model), appearance_(skin_appearance(model.landmarks, rest.landmarks, rest.vertices, resting_eyes(model)))
 {
   const std::vector<Eyeball> eyes = eyeballs(model, [](std::size_t) { return RigidTransform(); });
-  for (const Contact& contact : model.contacts)
+  for (const BodyShape& body : body_shapes(model))
   {
-    const auto is_ball = [&](const Eyeball& eye) { return static_cast<std::int32_t>(eye.bone) == contact.bone; };
+    const auto is_ball = [&](const Eyeball& eye) { return static_cast<std::int32_t>(eye.bone) == body.bone; };
     if (!std::any_of(eyes.begin(), eyes.end(), is_ball))
-      bodies_.push_back({ body_at_rest(model, contact), contact.bone });
+      bodies_.push_back({ body_at_rest(model, body), body.bone });
   }
 }
 

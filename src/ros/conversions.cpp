@@ -245,12 +245,11 @@ geometry_msgs::Wrench to_wrench(const Model& model, const BodyShape& shape, cons
 visualization_msgs::MarkerArray to_bodies(const Model& model, const std::string& face_frame)
 {
   visualization_msgs::MarkerArray out;
-  // the shapes are those of the contacts, in their order
-  const std::vector<BodyShape> shapes = body_shapes(model);
-  for (std::size_t b = 0; b < shapes.size(); ++b)
+  for (const BodyShape& shape : body_shapes(model))
   {
-    const BodyShape& shape = shapes[b];
-    const RenderMesh mesh = body_at_rest(model, model.contacts[b]);
+    const RenderMesh mesh = body_at_rest(model, shape);
+    if (mesh.triangles.empty())
+      continue;
     visualization_msgs::Marker& marker = out.markers.emplace_back();
     marker.header.frame_id = body_frame(face_frame, shape);
     marker.frame_locked = true;

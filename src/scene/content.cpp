@@ -1,6 +1,6 @@
 #include "scene/quantity.hpp"
 
-#include "frontalis/scene/content_hash.hpp"
+#include "frontalis/model/content_hash.hpp"
 #include "frontalis/scene/head_template.hpp"
 #include "frontalis/scene/read_scene.hpp"
 
@@ -189,14 +189,6 @@ void add_numerics(const Scene& scene, Content& content)
 }
 
 }  // namespace
-
-std::string content_hash(const std::string& content)
-{
-  std::uint64_t hash = 14695981039346656037ULL;
-  for (const char byte : content)
-    hash = (hash ^ static_cast<unsigned char>(byte)) * 1099511628211ULL;
-  return fmt::format("{:016x}", hash);
-}
 
 // Returns the content of a scene as text, with numbers in SI units. A hash of the file's bytes replaces the path of
 // each mesh file. Line numbers and the settings of profiles that are not chosen are left out.

@@ -285,7 +285,8 @@ TEST(GeneratedHead, BakesWithAllItsMuscles)
   const Model model = bake(read_scene(source + "/config/head.yaml", options), &report);
   expect_one_piece(report);
   ASSERT_EQ(report.muscles.size(), 51u);
-  expect_measured_muscles(report, 4 * 27e-9);  // four voxels
+  // Straps of half a voxel's thickness depend on where the 64 samples of a voxel lie, which differs between the sides.
+  expect_measured_muscles(report, 10 * 27e-9);  // ten voxels
   EXPECT_EQ(model.landmarks.size(), 25u);
   EXPECT_GT(model.skin.vertices.size(), 1000u);
   EXPECT_GT(model.rigid.size(), 500u);

@@ -132,7 +132,7 @@ TEST_F(Calibrate, finds_gains_and_modulus_of_a_robots_face)
   };
   EXPECT_EQ(found("poses"), 9);
   EXPECT_EQ(found("\nheld_out"), 3);
-  EXPECT_LE(found("held_out_error"), 0.5) << text;
+  EXPECT_LE(found("held_out_error"), 0.02) << text;
   // the injected errors must show before, and be gone afterwards
   EXPECT_GT(found("error_before"), 10 * found("held_out_error")) << text;
   EXPECT_NEAR(found("modulus"), stiffness, 0.02) << text;

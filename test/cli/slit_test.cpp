@@ -5,8 +5,9 @@
 
 #include "bake/scene_pieces.hpp"
 
+#include "files.hpp"
+
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 
@@ -16,6 +17,12 @@ namespace
 using namespace frontalis;
 
 constexpr std::array<double, 4> places{ 1e-3, 5e-3, 10e-3, 14e-3 };  // along the slit, which is 18 mm long [m]
+
+const TemporaryFolder& folder()
+{
+  static const TemporaryFolder made;
+  return made;
+}
 
 SceneConstraint held(const std::string& surface, const std::string& bone)
 {
@@ -31,7 +38,7 @@ Scene slit_block(double voxel, double z)
 {
   Scene scene = plain_scene(voxel);
   scene.accuracy.assumed_strain = true;
-  const std::string file = std::filesystem::temp_directory_path() / ("opening" + std::to_string(getpid()) + ".obj");
+  const std::string file = folder() / "opening.obj";
   TriangleMesh mesh;
   for (const double x : { -1e-3, 18e-3 })
     for (const double y : { -1e-3, 7e-3 })
@@ -148,7 +155,7 @@ TEST(Slit, TensionOpensItAsASheetOnALayerWould)
 {
   constexpr double length = 160e-3, width = 4e-3, skin = 2e-3, below = 4e-3, young = 100e3, soft = 2.6e3, ratio = 0.3;
   constexpr double stress = 2e3;
-  const std::string file = std::filesystem::temp_directory_path() / ("cut" + std::to_string(getpid()) + ".obj");
+  const std::string file = folder() / "cut.obj";
   TriangleMesh cut;
   for (const double y : { -1e-3, 5e-3 })
     for (const double z : { 0.5 * below, 8e-3 })  // deeper than the skin, whose lower nodes would stay joined

@@ -66,5 +66,24 @@ TEST(Teeth, are_painted_between_gums_and_their_edges)
   }
 }
 
+TEST(Teeth, are_painted_where_the_mouth_is_in_the_face_frame)
+{
+  Model model;
+  model.to_face.translation = { 10e-3, -20e-3, -60e-3 };
+  model.landmarks = { "mouth_corner_left" };
+  model.landmark_positions = { { 0, 25e-3, 5e-3 } };
+  Contact contact;
+  contact.name = "teeth_above";
+  contact.shape = arch();
+  for (auto& p : contact.shape.vertices)
+    p = { p[0] - 10e-3, p[1] + 20e-3, p[2] + 5e-3 };
+  model.contacts = { contact };
+  const RenderMesh mesh = body_at_rest(model, body_shapes(model)[0]), expected = painted_teeth(arch(), false, 0);
+  EXPECT_EQ(mesh.labels, expected.labels);
+  EXPECT_EQ(mesh.colours, expected.colours);
+  ASSERT_EQ(mesh.vertices.size(), expected.vertices.size());
+  EXPECT_NEAR(mesh.vertices[0][2], expected.vertices[0][2] - 55e-3F, 1e-6F);
+}
+
 }  // namespace
 }  // namespace frontalis

@@ -27,13 +27,13 @@ EffectSet effects_of(const Model& model);
 /// Whether one of the voxel's materials is viscous.
 bool is_viscous(const Model& model, std::size_t voxel);
 
-/// A rigid body that tissue may touch, and so exert a force on.
+/// A rigid body that tissue may touch, and so exert a force on, or one that is only shown (BodyShape::only_shown).
 struct TouchedBody
 {
   std::string name;
   std::int32_t bone = -1;  ///< index into Model::bones of the bone that moves the body; -1: the body stands still
 };
-/// All bodies that the model's tissue may touch, in the order of Solver::reactions().
+/// All rigid bodies of the model, in the order of Solver::reactions().
 std::vector<TouchedBody> touched_bodies(const Model& model);
 
 /// For each node, the index of a bone that may move it; -1: none.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "frontalis/model/body_shape.hpp"
 #include "frontalis/render/renderer.hpp"
 #include "frontalis/solver/solver.hpp"
 
@@ -69,9 +70,9 @@ RenderBall socket_of(const RenderBall& eyeball);
 /// the corners of the mouth at rest [m].
 RenderMesh painted_teeth(const TriangleMesh& surface, bool lower, double corner_height);
 
-/// A body at rest, in the face frame: painted as teeth if its name begins with "teeth" and the model has the landmark
-/// mouth_corner_left, else with its body_appearance().
-RenderMesh body_at_rest(const Model& model, const Contact& contact);
+/// One of the model's body_shapes() at rest, in the face frame: painted as teeth if its name begins with "teeth" and
+/// the model has the landmark mouth_corner_left, else with its body_appearance().
+RenderMesh body_at_rest(const Model& model, const BodyShape& body);
 
 /// Shows a model: its skin, its eyeballs and its bodies. In the face frame.
 class FaceAppearance

@@ -27,7 +27,7 @@ struct Frame
   std::vector<float> field;  ///< requested by RunnerSettings::wanted_field, per skin vertex; empty if none
   /// Displacements of the nodes in the local frame [m], while RunnerSettings::wants_displacements; else empty.
   std::vector<std::array<double, 3>> displacements;
-  std::vector<BodyFrame> bodies;  ///< bodies that tissue touches, one per entry of touched_bodies(model)
+  std::vector<BodyFrame> bodies;  ///< rigid bodies, one per entry of touched_bodies(model)
   std::vector<BodyFrame> bones;   ///< one per bone
   /// whether RunnerSettings::wants_bone_forces was true; otherwise reactions of bones are 0
   bool has_bone_forces = false;

@@ -87,6 +87,8 @@ std::string json_text(const nlohmann::ordered_json& json);
 
 /// Creates a folder and its parents; throws Error with its path.
 void make_folder(const std::string& path);
+/// Removes those files of a folder whose whole names match a regular expression.
+void remove_files(const std::string& folder, const std::string& names);
 
 /// Writes a file completely or not at all; throws Error with its path.
 void write_text(const std::string& path, const std::string& text);

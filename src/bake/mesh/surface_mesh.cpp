@@ -140,6 +140,20 @@ double surface_area(const TriangleMesh& mesh)
   return sum;
 }
 
+std::vector<Vector3d> vertex_normals(const TriangleMesh& mesh)
+{
+  std::vector<Vector3d> normals(mesh.vertices.size(), Vector3d::Zero());
+  for (const Triangle& t : mesh.triangles)
+  {
+    const auto [a, b, c] = corners(mesh, t);
+    for (const std::int32_t v : t)
+      normals[v] += (b - a).cross(c - a);
+  }
+  for (Vector3d& n : normals)
+    n.normalize();
+  return normals;
+}
+
 Box bounding_box(const TriangleMesh& mesh)
 {
   Box box;

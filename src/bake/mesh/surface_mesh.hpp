@@ -33,6 +33,9 @@ double surface_area(const TriangleMesh& mesh);
 
 Box bounding_box(const TriangleMesh& mesh);
 
+/// Unit normal of each vertex: the sum of its triangles' normals weighted by their areas; 0 for one without triangles.
+std::vector<Vector3d> vertex_normals(const TriangleMesh& mesh);
+
 /// Joins vertices at the same place, in order of first use, and drops triangles that have a vertex twice. Returns the
 /// number of triangles dropped.
 std::size_t join_vertices(TriangleMesh& mesh);

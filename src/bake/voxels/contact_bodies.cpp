@@ -168,18 +168,22 @@ std::int32_t bone_of(const std::string& name, Model& model)
 }
 
 // Merges the points that lie in the same eighth of a voxel into one at their centroid, with the area of all of them.
-// More points distribute a pressure no better to the nodes of voxels, but each of them costs time.
-void thin_out(Contact& contact)
+// More points distribute a pressure no better to the nodes of voxels, but each of them costs time. The two sides of a
+// sheet that is thinner than that stay apart. `surface` has the points as its vertices.
+void thin_out(Contact& contact, const TriangleMesh& surface)
 {
-  std::map<std::array<int, 4>, std::vector<std::size_t>> cells;
+  const std::vector<Vector3d> normals = vertex_normals(surface);
+  std::map<std::array<int, 4>, std::array<std::vector<std::size_t>, 2>> cells;
   for (std::size_t p = 0; p < contact.points.size(); ++p)
   {
     const auto& at = contact.binding.coordinates[p];
     const auto half = [&](std::size_t axis) { return static_cast<int>(std::floor(2 * at[axis])); };
-    cells[{ contact.binding.voxel[p], half(0), half(1), half(2) }].push_back(p);
+    auto& sides = cells[{ contact.binding.voxel[p], half(0), half(1), half(2) }];
+    const bool other = !sides[0].empty() && normals[p].dot(normals[sides[0].front()]) < 0;
+    sides[other ? 1 : 0].push_back(p);
   }
   Contact thin;
-  for (const auto& [cell, points] : cells)
+  const auto merge = [&](std::int32_t voxel, const std::vector<std::size_t>& points)
   {
     double area = 0;
     Vector3d place = Vector3d::Zero(), in_voxel = Vector3d::Zero();
@@ -191,14 +195,17 @@ void thin_out(Contact& contact)
       in_voxel += contact.area[p] * Vector3d(at[0], at[1], at[2]);
     }
     if (!(area > 0))
-      continue;
+      return;
     const Vector3d at = in_voxel / area;
     thin.points.push_back(to_array(place / area));
     thin.area.push_back(area);
-    thin.binding.voxel.push_back(cell[0]);
+    thin.binding.voxel.push_back(voxel);
     thin.binding.coordinates.push_back(
         { static_cast<float>(at[0]), static_cast<float>(at[1]), static_cast<float>(at[2]) });
-  }
+  };
+  for (const auto& [cell, sides] : cells)
+    for (const std::vector<std::size_t>& points : sides)
+      merge(cell[0], points);
   contact.points = std::move(thin.points);
   contact.area = std::move(thin.area);
   contact.binding = std::move(thin.binding);
@@ -250,6 +257,8 @@ void bind_contacts(const Scene& scene, const PreparedSurfaces& surfaces, const L
         const TriangleMesh& mesh = named_surface(surfaces, name, place).mesh();
         add_shape(name == scene.skin.surface ? part_beyond(mesh, scene.skin.crop) : mesh, frame, contact);
       }
+      if (contact.shape.triangles.empty())
+        throw Error(place + ": the skin's crop leaves nothing to show; leave out this constraint, or crop the skin");
       contact.centre = centre_of(contact.shape);
       contact.field = sphere_field(contact.centre, contact.reach);
       model.contacts.push_back(std::move(contact));
@@ -295,7 +304,7 @@ void bind_contacts(const Scene& scene, const PreparedSurfaces& surfaces, const L
                                 constraint.name, bound.too_far, on));
     set_points(contact, bound.mesh, bound.binding);
     check_overlap(scene, place, contact, bodies, frame, model);
-    thin_out(contact);
+    thin_out(contact, bound.mesh);
     model.contacts.push_back(std::move(contact));
   }
 }

@@ -138,6 +138,17 @@ void make_folder(const std::string& path)
     throw Error(path + ": cannot be created: " + failed.message());
 }
 
+void remove_files(const std::string& folder, const std::string& names)
+{
+  const std::regex pattern(names);
+  std::vector<fs::path> found;
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (entry.is_regular_file() && std::regex_match(entry.path().filename().string(), pattern))
+      found.push_back(entry.path());
+  for (const fs::path& file : found)
+    fs::remove(file);
+}
+
 void write_text(const std::string& path, const std::string& text)
 {
   std::error_code failed;

@@ -37,20 +37,6 @@ int levels_for(const PolygonMesh& cage, double edge)
   return std::min(5, std::max(1, static_cast<int>(std::ceil(std::log2(sum / count / edge) - 0.2))));
 }
 
-std::vector<Vector3d> vertex_normals(const TriangleMesh& mesh)
-{
-  std::vector<Vector3d> normals(mesh.vertices.size(), Vector3d::Zero());
-  for (const Triangle& t : mesh.triangles)
-  {
-    const auto [a, b, c] = corners(mesh, t);
-    for (const std::int32_t v : t)
-      normals[v] += (b - a).cross(c - a);
-  }
-  for (Vector3d& n : normals)
-    n.normalize();
-  return normals;
-}
-
 /// Locks of hair that run from the crown of the head: a sum of waves across them, -1 to 1, equal on both sides.
 double lock_at(const Vector3d& p)
 {
