@@ -170,7 +170,7 @@ Json primitive_of(Glb& glb, RenderMesh mesh)
   Json attributes{ { "POSITION", glb.add(turned(mesh.vertices)) } };
   if (!mesh.normals.empty())
     attributes["NORMAL"] = glb.add(turned(mesh.normals));
-  // Colours of glTF are linear.
+  // Colours at the vertices of glTF are linear, not sRGB.
   for (auto& colour : mesh.colours)
     for (float& channel : colour)
       channel = std::pow(channel, 2.2F);

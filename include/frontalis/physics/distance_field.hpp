@@ -58,7 +58,8 @@ struct FieldPoint
   Vec3<T> offset;
 };
 
-/// Converts the point p [m] in the surface's frame. The cell of a sphere is (0,0,0), at its centre.
+/// Converts the point p [m], in the surface's frame, to a cell and an offset. The only cell of a sphere is (0,0,0), at
+/// its centre.
 FRONTALIS_LAW FieldPoint<double> field_point(const DistanceField& field, const Vec3<double>& p)
 {
   FieldPoint<double> point{ { 0, 0, 0 }, p - Vec3<double>{ field.origin[0], field.origin[1], field.origin[2] } };

@@ -84,8 +84,8 @@ FRONTALIS_LAW FieldValue<T> spline(const FieldSamples& samples, const T& inverse
 
 /// Distance of a point from a sphere as a FieldValue. The point has moved by `way` [m] from a place that is `offset`
 /// [m] from the sphere's centre and `distance` [m] from its surface. If the caller finds `offset` and `distance` in
-/// double precision, single precision suffices here: rounding errors are then in proportion to the way, not to the size
-/// of the sphere.
+/// double precision, single precision suffices here: rounding errors are then in proportion to the distance moved, not
+/// to the size of the sphere.
 template <class T>
 FRONTALIS_LAW FieldValue<T> sphere_value(const T& distance, const Vec3<T>& offset, const Vec3<T>& way)
 {

@@ -41,8 +41,8 @@ FRONTALIS_LAW bool level_plane(const FieldValue<T>& field, const T& level, Level
 /// Largest distance [m] of a sliding node from its tangent plane that a step leaves. A smaller error is halved in each
 /// step. Errors arise when the tangent plane of a node is replaced; removing one within a single step would add half
 /// the tissue's stiffness times the squared error to the energy and excite vibrations. The value is 5 um less the error
-/// of a plane that is kept for some steps: plane_error and, where the curvature grows along the way, about as much
-/// again.
+/// of a plane that is kept for some steps: plane_error and, where the curvature grows along the node's path, about as
+/// much again.
 constexpr double error_left = 3.5e-6;
 
 /// Slides a node on the plane normal . u = offset (unit normal): removes the velocity along the normal (Lapeer et al.

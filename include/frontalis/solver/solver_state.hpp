@@ -25,7 +25,7 @@ enum class SkinField
   lines    ///< height of fine lines over the skin [m]; 0 in a solver, since FineLines adds the lines to frames later
 };
 
-/// Energies [J], summed in double precision, and the state of the worst voxel.
+/// Energies [J], summed in double precision, and the worst voxel: the one with the smallest J.
 struct Monitor
 {
   double kinetic = 0;

@@ -30,7 +30,7 @@ struct EffectCosts
   std::vector<EffectCost> effects;
 };
 
-/// The model's voxels with neo-Hookean elasticity alone, one-point integration and scalar hourglass control.
+/// Returns the model's voxels with neo-Hookean elasticity alone, one-point integration and scalar hourglass control.
 Model plain_model(const Model& model);
 
 /// Times the model and copies that each lack one of its effects; `timer` measures the time per step.

@@ -242,7 +242,7 @@ void bind_contacts(const Scene& scene, const PreparedSurfaces& surfaces, const L
     contact.friction = constraint.friction;
     contact.reach = reach_share * *std::max_element(model.spacing.begin(), model.spacing.end());
 
-    // nothing touches what is only shown
+    // no tissue touches a body that is only shown
     if (constraint.within == 0)
     {
       for (const std::string& name : constraint.surfaces)

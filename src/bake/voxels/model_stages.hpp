@@ -7,7 +7,7 @@ namespace frontalis
 
 struct MuscleFibres;
 
-/// Number of the flap that has a voxel of the model, from 1; 0: the voxel is in the body.
+/// Number, from 1, of the flap (Model::Flap) to which a voxel of the model belongs; 0: it is in no flap.
 inline int flap_of(const Model& model, std::size_t voxel)
 {
   const auto above = [&](const Model::Flap& flap) { return flap.first > model.voxels[voxel][2]; };

@@ -40,7 +40,7 @@ public:
   {
     Point normal{ 0, 0, 0 };  // normal of the plane normal . p = height; zero: the node has no plane yet
     double height = 0;
-    double pressing = 0;  // reaction per mass with the delay of friction [m/s2]
+    double pressing = 0;  // reaction per mass, delayed as friction is (friction_response()) [m/s2]
     // Values of the latest step:
     Point outward{ 0, 0, 0 };           // the normal in the scene's frame
     Point surface_velocity{ 0, 0, 0 };  // [m/s]

@@ -6,7 +6,7 @@
 namespace frontalis
 {
 
-/// Energies and the worst voxel of a plane or of any other part of a model.
+/// Energies of a plane of voxels or of any other part of a model, and its worst voxel: the one with the smallest J.
 struct PlaneMonitor
 {
   double kinetic = 0, internal = 0, hourglass = 0;  ///< [J]

@@ -47,7 +47,7 @@ struct Balance
     momentum[1] += m * v.y;
     momentum[2] += m * v.z;
   }
-  /// Adds a mass that is free along one direction only, with dot(direction, velocity) = speed.
+  /// Adds a mass that follows the master along one direction only, with dot(direction, velocity) = speed.
   void add(double m, const Point& direction, double speed)
   {
     const double d[3] = { direction.x, direction.y, direction.z };
@@ -210,7 +210,8 @@ void AttachedNodes<Real>::constrain_groups(const NodeShare& share, Real* const u
     follow_on_bones(*group, u, v, bones);
 }
 
-// Finds a new plane if the old one is no longer valid. Where the field ends or has no direction, the old plane is kept.
+// Linearises the level at `place` if `place` is outside the range of the present plane. Where the field ends or its
+// gradient is too short, the present plane is kept.
 template <class Real>
 void AttachedNodes<Real>::renew(Plane& plane, std::int32_t surface, const Point& place) const
 {

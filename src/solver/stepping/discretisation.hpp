@@ -14,15 +14,16 @@ namespace frontalis
 {
 
 /// The part of a voxel that has a law other than neo-Hookean. Each material has a part of its own, but Mooney-Rivlin
-/// materials, and likewise Fung materials, are averaged by their fractions, because their parameters are moduli and
-/// stiffenings.
+/// materials, and likewise Fung materials, are averaged by their fractions, because means of their parameters, which
+/// are moduli and stiffening exponents, are meaningful.
 struct LawPart
 {
   Law law;
   double weight;  ///< fraction of the voxel's tissue
   std::array<double, physics::parameter_slots> parameters;
   double stiffness_at_rest;  ///< tangent shear stiffness [Pa]
-  /// voxel stiffness per tangent stiffness: weight times tissue volume divided by h^2 of the shortest edge [m]
+  /// factor from a tangent stiffness [Pa] to the voxel's stiffness [N/m]: weight times tissue volume divided by the
+  /// square of the shortest edge [m]
   double per_tangent;
   std::int32_t material;  ///< -1: averaged from several materials
 };

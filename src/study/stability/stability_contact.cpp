@@ -170,7 +170,7 @@ void blinking(CaseRun& run)
     const Vectors shut = motion.displacements();
     depth = std::max(depth, deepest(motion));
     motion.advance({ 0.5 * blink, turned(0) });
-    // The first swing has died away by the 20th blink.
+    // The initial vibration has died away by the 20th blink.
     if (i == 20)
       shut_before = shut;
     if (i > 20)

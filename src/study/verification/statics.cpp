@@ -160,7 +160,7 @@ Sparse shell_stiffness(const Model& model, const std::array<double, 9>& gradient
 
 RestState find_equilibrium(Model model, const EquilibriumSettings& settings)
 {
-  constexpr double longest = 60;  // in periods
+  constexpr double longest = 60;  // largest number of periods before a search for equilibrium has failed
   model.damping = 4 * std::acos(-1.0) / settings.period;
   for (auto& load : model.loads)
     load.ramp = settings.ramp * settings.period;
@@ -203,7 +203,7 @@ Point internal_force(Solver& solver, const std::vector<std::int32_t>& nodes)
 
 struct LinearStatics::System
 {
-  // row of the equations of each component of each node; -1: the component is fixed
+  // for each component of each node, the index of its unknown; -1: the component is fixed
   std::vector<std::array<int, 3>> unknown;
   Vectors fixed;           // prescribed displacements [m]
   Eigen::VectorXd forces;  // forces that prescribed displacements cause [N]

@@ -57,8 +57,8 @@ FRONTALIS_LAW Vec3<double> surface_velocity(const Pose& now, const Pose& before,
   return rate * (now.outwards(p) - before.outwards(p));
 }
 
-/// now, before: pose of the bone at the end and start of the step; rate: 1 / dt; place, v: position and velocity of the
-/// node after its update.
+/// Finds the motion of a node relative to a bone. now, before: pose of the bone at the end and start of the step; rate:
+/// 1 / dt; place, v: position and velocity of the node after its update.
 FRONTALIS_LAW RelativeMotion relative_to(const Pose& now, const Pose& before, double rate, const Vec3<double>& place,
                                          const Vec3<double>& v)
 {
