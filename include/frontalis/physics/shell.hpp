@@ -17,7 +17,7 @@ struct ShellTriangle
   T inverse_area;       ///< 1 over twice the area [1/m2]
   T shear, dilatation;  ///< Lame's constants in plane stress, times thickness and area [J]
   T height[3];          ///< of vertices 3..5 above the triangle's plane [m]
-  T bending[6];         ///< symmetric matrix of the bending energy over heights: 11, 12, 13, 22, 23, 33 [J/m2]
+  T bending[6];         ///< matrix of the bending energy as a form of heights: 11, 12, 13, 22, 23, 33 [J/m2]
 };
 
 template <class T>

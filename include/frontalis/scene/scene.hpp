@@ -14,7 +14,7 @@
 namespace frontalis
 {
 
-/// Stiff film on the skin, whose lines are finer than voxels (SkinFilm).
+/// Stiff film on the skin, which wrinkles in lines that are finer than voxels (SkinFilm).
 struct SceneFilm
 {
   std::string material;

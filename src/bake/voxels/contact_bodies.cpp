@@ -18,10 +18,10 @@ namespace
 {
 
 constexpr double largest_spacing = 0.5e-3;  // largest distance between samples of the field [m]
-constexpr double spacing_share = 0.5;       // largest distance between samples, over the shortest voxel edge
-constexpr double reach_share = 2;           // reach of the field from a surface, over the longest voxel edge
+constexpr double spacing_share = 0.5;       // largest distance between samples, in shortest voxel edges
+constexpr double reach_share = 2;           // reach of the field from a surface, in longest voxel edges
 constexpr double deepest_inside = 20e-3;    // reach of the field into a body, more than the thickness of tissue [m]
-constexpr double overlap_share = 0.5;       // largest depth of tissue in a body at rest, over the shortest voxel edge
+constexpr double overlap_share = 0.5;       // largest depth of tissue in a body at rest, in shortest voxel edges
 
 // A closed surface. The distance from it is positive outside.
 struct Body

@@ -52,7 +52,8 @@ struct LocalFrame
   {
     return to_scene(to_vector(model.spacing).cwiseProduct(Vector3d(i, j, k)));
   }
-  /// The voxel to whose tissue a point near a gap belongs; -1 elsewhere. Local coordinates.
+  /// Index of the voxel to whose tissue a point near a gap belongs; -1 for a point that is not near a gap. Local
+  /// coordinates.
   std::int32_t owner(const Model& model, const VoxelIndex& index, const Vector3d& local) const;
   Vector3d voxel_centre(const Model& model, std::size_t e) const
   {
@@ -72,7 +73,8 @@ void copy_settings(const Scene& scene, const LocalFrame& frame, Model& model);
 /// Copies the poses of bones in expressions, action units and the demo. The model must have its bones.
 void copy_poses(const Scene& scene, Model& model);
 
-/// Lowers the weights of muscles where the scene weakens them. The last stage, because reports count whole muscles.
+/// Lowers the weights of muscles where the scene weakens them. This is the last stage, because reports describe the
+/// muscles at full strength.
 void weaken_muscles(const Scene& scene, const LocalFrame& frame, Model& model);
 
 /// Finds rigid, sliding and prescribed nodes and fills bones, constraint surfaces and loads of kind displacement.
@@ -99,8 +101,8 @@ std::vector<const PreparedSurface*> attaching_surfaces(const Scene& scene, const
 void attach_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,
                   BakeMonitor& monitor);
 
-/// Makes the joints of flaps agree with the restrictions of their nodes. Joined nodes rest at the same place, so they
-/// are restricted alike, unless the tissue on the two sides of a gap is attached to a bone differently.
+/// Makes the joints of flaps agree with the restrictions of their nodes. Joined nodes rest at the same place and are
+/// therefore restricted alike, unless the tissue on the two sides of a gap is attached to a bone differently.
 void settle_joints(Model& model);
 
 /// Removes loose components of voxels, which only common faces connect, not edges or corners. Keeps the largest

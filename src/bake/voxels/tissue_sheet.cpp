@@ -101,7 +101,7 @@ std::optional<std::pair<Vector3d, double>> sphere_of(const PreparedSurface& surf
   const TriangleMesh& mesh = surface.mesh();
   if (!surface.closed() || mesh.vertices.size() < 12)
     return std::nullopt;
-  // |v - m|^2 = 2 (c - m) . (v - m) + k for all vertices v, with any point m
+  // for a sphere with centre c and any point m, |v - m|^2 = 2 (c - m) . (v - m) + k with the same k at all vertices v
   const Vector3d middle = surface.box().center();
   Eigen::MatrixX4d a(mesh.vertices.size(), 4);
   Eigen::VectorXd b(mesh.vertices.size());

@@ -41,8 +41,8 @@ public:
   std::vector<RigidTransform> bodies(const std::vector<RigidTransform>& bones) const override;
   std::int64_t lost_points() const override { return std::count(touches_.begin(), touches_.end(), Touching::lost); }
 
-  // The following types and functions serve a backend that keeps the points in a memory of its own and finds their
-  // forces there. follow() then sums these forces.
+  // The following types and functions are for a backend that keeps the points in its own memory and finds their forces
+  // there. follow() then sums these forces.
 
   using Vector = physics::Vec3<double>;
   struct Point

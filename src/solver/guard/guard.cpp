@@ -178,8 +178,8 @@ std::int32_t Guard::Implementation::voxel_at(std::int32_t node) const
   return static_cast<std::int32_t>(std::find_if(all.begin(), all.end(), has) - all.begin());
 }
 
-// Finds where the motion goes wrong. NaN and infinity spread over many voxels within a few steps, so the motion is
-// repeated step by step from the good state until the first voxel has them.
+// Finds where the motion goes wrong. NaN and infinity spread over many voxels within a few steps. The motion is
+// therefore repeated step by step from the good state until the first voxel has them.
 InstabilityReport Guard::Implementation::examined(Instability finding, const Controls& target, double end)
 {
   std::vector<bool> moved;

@@ -55,11 +55,12 @@ Matrix inverse(const Matrix& a)
   return b;
 }
 
-// Part of a voxel's edge by which a vertex may lie beside the place where the voxel carries it: single precision of the
-// coordinates in the voxel.
+// Distances below this fraction of a voxel's edge are rounding errors, because coordinates in a voxel have single
+// precision.
 constexpr double rounding = 1e-5;
 
-// Where voxels carry the vertices of a shell at rest. Those that its shape has within rounding errors are its own.
+// Returns the positions of a shell's vertices that follow from the voxels at rest. A position that differs only by
+// rounding errors from that in Shell::surface is replaced by it, so that both are exactly equal.
 std::vector<Vector> carried_vertices(const Model& model, const Shell& shell)
 {
   std::vector<Vector> places;

@@ -76,7 +76,7 @@ public:
     return nullptr;
   }
 
-  double volume = 0;                         ///< volume of a whole voxel [m3]
+  double volume = 0;                         ///< volume of a voxel, whatever its fill [m3]
   bool assumed_strain = false;               ///< whether hourglass control is by assumed strain
   bool selective_reduced = false;            ///< whether integration replaces hourglass control
   bool laws = false;                         ///< whether a voxel has a law other than neo-Hookean

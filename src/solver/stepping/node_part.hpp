@@ -52,7 +52,7 @@ private:
   Real* v_[3] = {};
 };
 
-/// The part of a host backend that serves an effect on nodes. In each step, each thread calls these functions in the
+/// The part of a host backend that computes an effect on nodes. In each step, each thread calls these functions in the
 /// order of their declaration, for its own nodes. By default they do nothing. Real is the backend's number type.
 template <class Real>
 class NodePart : public EffectPart

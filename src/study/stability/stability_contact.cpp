@@ -14,7 +14,7 @@ namespace frontalis
 namespace
 {
 
-// Adds a body that may touch the lower or upper side of a box of whole voxels, moved by a new bone with this name.
+// Adds a body that may touch the lower or upper side of a box of full voxels, moved by a new bone with this name.
 void touch(Model& model, const std::string& bone, bool upper, const SampledField& body, double friction)
 {
   Contact contact = touching_side(model, upper, body);

@@ -31,7 +31,7 @@ Kick<T> kick_of(double damping, double seconds, const Gravity& gravity)
   return kick;
 }
 
-/// Velocity of a free node after a step. gain_over_mass: Kick::gain over the node's mass [s/kg].
+/// Velocity of a free node after a step. gain_over_mass: Kick::gain divided by the node's mass [s/kg].
 template <class T>
 FRONTALIS_LAW T kicked(const Kick<T>& kick, int axis, T v, T gain_over_mass, T force)
 {
