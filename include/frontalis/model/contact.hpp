@@ -33,7 +33,7 @@ struct Contact
   Binding binding;                            ///< one entry per point
 };
 
-/// Area of each vertex [m2]: a third of each of its triangles.
+/// Area of each vertex [m2]: a third of the area of the triangles at it.
 std::vector<double> vertex_areas(const TriangleMesh& surface);
 
 /// Sets the points of a contact: the vertices of a bound surface, with their areas.

@@ -63,7 +63,7 @@ struct Model : ModelPresets
     std::int32_t shift = 0;
   };
   std::vector<Flap> flaps;  ///< ascending; empty without gaps
-  /// Two nodes that move as one, where a flap continues in other tissue. Both have the same rest position.
+  /// Two nodes that move as one, where a flap is connected to other tissue. Both have the same rest position.
   struct Joint
   {
     std::int32_t node = 0;

@@ -37,7 +37,7 @@ struct Monitor
   double critical_time_step = 0;     ///< present value from the bound at nodes [s] (physics/time_step.hpp)
   std::int32_t stiffest_voxel = -1;  ///< stiffest voxel at the node that sets the critical step
   double step_share = 0;  ///< latest time step divided by the present critical one (of the model's TimeStepEstimate)
-  /// number of sliding nodes past the rim of their surface's field, which keep their latest plane
+  /// number of sliding nodes past the rim of their surface's field, which keep their latest tangent plane
   std::int64_t past_rim = 0;
   std::int32_t lost_node = -1;  ///< a node that is more than 4 mm past the rim; -1: none
   /// number of contact points deeper in a body than its field reaches, which nothing pushes out

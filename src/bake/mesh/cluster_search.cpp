@@ -140,10 +140,11 @@ void ClusterSearch::add_groups(Cube& cube)
     if (near.distance < nearest.distance)
       nearest = near;
   }
-  // A point of the cube is x from its centre, |x| <= radius. From the nearest triangle T, in the direction t at the
-  // distance d from the centre, it is at most |d t + x| away, which exceeds d + t . x by at most `bend`. From any other
-  // triangle, in the direction a at the distance e, it is at least e + a . x away. So T is the nearer one for all x if
-  // e > d + bend + |t - a| radius.
+  // Let x be the vector from the cube's centre to a point of the cube, |x| <= radius. Let d be the distance of the
+  // nearest triangle T from the centre, and t the unit vector from T to the centre; e and a are those of another
+  // triangle. The distance of the point from T is at most |d t + x|, which exceeds d + t . x by at most `bend`. Its
+  // distance from the other triangle is at least e + a . x. T is therefore nearer to all points of the cube if e > d +
+  // bend + |t - a| radius.
   const double d = nearest.distance, bend = d > 0.5 * radius ? 0.5 * radius * radius / d : 2 * (radius - d);
   cube.begin = groups_.size();
   std::size_t used = 4;

@@ -167,8 +167,8 @@ std::int32_t bone_of(const std::string& name, Model& model)
   return bone;
 }
 
-// Merges the points that lie in the same eighth of a voxel into one at their centroid, with the area of all of them.
-// More points distribute a pressure no better to the nodes of voxels, but each of them costs time.
+// Merges the points that lie in the same eighth of a voxel into one point at their centroid, with the sum of their
+// areas. More points distribute a pressure no better to the nodes of voxels, but each of them costs time.
 void thin_out(Contact& contact)
 {
   std::map<std::array<int, 4>, std::vector<std::size_t>> cells;

@@ -158,8 +158,8 @@ bool faces(const std::vector<const PreparedSurface*>& others, const std::array<V
                      });
 }
 
-/// For each triangle of a surface its number in the sheet, which has them in the same order; -1: it is not in the
-/// sheet.
+/// Returns for each triangle of a surface its number in the surface's sheet, which has the triangles in the same order,
+/// or -1 if it is not in the sheet.
 std::vector<std::int32_t> numbers_in_sheet(const SlidingSurface& surface)
 {
   const TriangleMesh &whole = surface.whole->mesh(), &sheet = surface.sheet->mesh();

@@ -218,8 +218,8 @@ typename TissueContact<Real>::Found TissueContact<Real>::search(std::size_t p)
                double gap;
                if (!meets(p, t, moved, gap))
                  return;
-               // If t is nearer, it replaces the found triangle that shares a corner with it, else the farthest one
-               // found.
+               // If t is nearer, it replaces the triangle found so far that shares a corner with t or, if none does,
+               // the farthest triangle found so far.
                std::size_t k = found.away[0] > found.away[1] ? 0 : 1;
                for (std::size_t same = 0; same < most_pairs; ++same)
                  if (found.triangle[same] >= 0 && adjoin(t, found.triangle[same]))

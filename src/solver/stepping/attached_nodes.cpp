@@ -226,9 +226,9 @@ void AttachedNodes<Real>::renew(Plane& plane, std::int32_t surface, const Point&
   plane = { value.gradient, place, value.value, level.slip * level.slip };
 }
 
-// Finds the velocity of the master that minimises the sum over the group of mass times |v - v*|^2, where v* is the
-// velocity of a node before the constraints, and v that after them. A held node contributes its mass along all axes, a
-// sliding node along the gradient of its master's level.
+// Finds the velocity of the master that minimises the sum over the group of mass times |v - v*|^2, where v* and v are
+// the velocities of a node before and after the constraints. A held node contributes its mass along all axes, a sliding
+// node along the gradient of its master's level.
 template <class Real>
 void AttachedNodes<Real>::follow_on_bones(const Group& group, Real* const u[3], Real* const v[3], const Bones& bones)
 {

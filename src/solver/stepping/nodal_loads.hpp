@@ -8,7 +8,8 @@
 namespace frontalis
 {
 
-/// Nodes whose mass is scaled selectively, so that gravity on them would otherwise be too large.
+/// Nodes to which selective mass scaling has added mass, so that gravity on them would be too large without a
+/// correction.
 std::vector<std::int32_t> relieved_nodes(const Model& model, const Discretisation& discretisation);
 /// The force [N] on a node of relieved_nodes() that cancels the weight of the added mass.
 std::array<double, 3> gravity_relief(const Model& model, const Discretisation& discretisation, std::int32_t node);

@@ -33,7 +33,7 @@ struct BackendState
 struct BackendTraits
 {
   std::string description;  ///< backend, number type, instruction set or device, threads
-  /// A plan lasts this long [s], as far as its number of steps stays within the next two values.
+  /// A plan lasts this long [s], unless the next two values limit its number of steps.
   double seconds_per_plan = 0;
   int fewest_steps_per_plan = 32;
   int most_steps_per_plan = 32;
