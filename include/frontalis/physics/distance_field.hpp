@@ -13,7 +13,7 @@ namespace physics
 /// Signed distance from a surface [m], positive on the side of its outward normals, in the surface's frame. The surface
 /// is a sphere, or its distance is sampled on a lattice. Samples are the coefficients of a quadratic B-spline (de Boor,
 /// A Practical Guide to Splines, 1978), which is smooth: its gradient has no kinks, and it rounds the surface's edges
-/// within about one spacing. Plain pointers, so that the same code runs on host and GPU.
+/// within about one spacing. Arrays are plain pointers, so that the same code runs on host and GPU.
 ///
 /// A cell is the cube around one sample. Only cells that nodes may reach are stored, in bricks of 8 x 8 x 8. A brick
 /// repeats one layer of its neighbours' samples, so that it has the 3 x 3 x 3 samples around each of its cells.

@@ -27,8 +27,9 @@ struct FieldSamples
   float value[27];
 };
 
-/// The spline at `place` in a cell, both from enter_cell(). Its second derivatives may jump at the cell's faces, but
-/// are at most 2 / spacing, because distances of neighbouring samples differ by at most the spacing.
+/// Evaluates the spline at `place` in a cell. Place and cell are those of enter_cell(). Its second derivatives may jump
+/// at the cell's faces, but are at most 2 / spacing, because distances of neighbouring samples differ by at most the
+/// spacing.
 template <class T>
 FRONTALIS_LAW FieldValue<T> spline(const FieldSamples& samples, const T& inverse_spacing, const Vec3<T>& place)
 {

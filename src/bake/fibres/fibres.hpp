@@ -34,7 +34,7 @@ void add_fibres(const Scene& scene, const std::vector<MuscleFibres>& fibres, con
 void spread_fibres(Model& model);
 
 /// Scales the reference stress of each muscle for which the scene gives a cross-section, by the given cross-section
-/// divided by the model's. The muscle then is as strong as in people. The model's cross-section is the muscle's volume
+/// divided by the model's. The muscle is then as strong as in people. The model's cross-section is the muscle's volume
 /// in voxels divided by the mean length of its fibres. Lists all muscles in the report.
 void scale_strength(const Scene& scene, const std::vector<MuscleFibres>& fibres, const LocalFrame& frame, Model& model,
                     BakeReport* report);

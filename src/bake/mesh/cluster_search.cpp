@@ -10,9 +10,9 @@ namespace
 // Relative margins above the rounding errors of double and of single precision.
 constexpr double margin = 1e-9;
 constexpr double float_margin = 1e-5;
-// A list of the triangles near a cube takes time to make, which only many points repay. It is made after `alone` points
-// in the cube. After `few_points` points, if the list has more than `few_groups` groups, lists are made for the eighths
-// of the cube in which points lie.
+// Making a list of the triangles near a cube saves time only if many points lie in the cube. The list is made after
+// `alone` points in it. After `few_points` points, if the list has more than `few_groups` groups, lists are made for
+// the eighths of the cube in which points lie.
 constexpr int alone = 4, few_points = 16;
 constexpr std::size_t few_groups = 8;
 

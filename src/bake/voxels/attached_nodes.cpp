@@ -305,8 +305,8 @@ private:
     return nearest;
   }
 
-  /// The side of a surface with tissue, +1 or -1. If both sides have tissue: the side of a node at the distance
-  /// `outwards`.
+  /// The side of a surface on which the tissue is, +1 or -1. If it is on both sides: the side of a node whose signed
+  /// distance from the surface is `outwards`.
   double side_at(const PreparedSurface& surface, double outwards)
   {
     const auto known = side_.find(&surface);

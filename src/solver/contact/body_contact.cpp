@@ -200,7 +200,8 @@ void BodyContact<Real>::before_step(const NodeShare& share, const Real* const u[
       continue;
     chunk = { std::numeric_limits<double>::max(), 0 };
     const std::size_t first = c * chunk_size, last = std::min(first + chunk_size, points_.size());
-    // Samples are far apart in memory: all of a chunk are requested before the first of them is needed.
+    // Samples are far apart in memory, so that those of a whole chunk of points are requested before the first is
+    // needed.
     Vector x[chunk_size];
     for (std::size_t p = first; p < last; ++p)
       if (const BodyState& body = now[points_[p].body]; !(due_[p] > body.way))

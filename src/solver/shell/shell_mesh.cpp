@@ -214,7 +214,7 @@ void ShellMesh::add(const Model& model, const Shell& shell)
       vertex[i + 3] = first + outer;
     }
     triangles.push_back(shell_triangle(x, beyond, shell.thickness, young, poisson));
-    // bending is measured from the creased shape, stretching from where the voxels carry the shell
+    // bending is measured from the creased shape, and stretching from the positions that the voxels give the vertices
     const Triangle free_of_moment = shell_triangle(creased, beyond, shell.thickness, young, poisson);
     std::copy_n(free_of_moment.rest.height, 3, triangles.back().rest.height);
     triangles.back().vertex = vertex;

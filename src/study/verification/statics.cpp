@@ -73,7 +73,7 @@ ElementMatrix element_stiffness(const Model& model, std::size_t e, const std::ar
     for (int row = 0; row < 24; ++row)
       k(row, column) = (after[row / 3][row % 3] - before[row / 3][row % 3]) / (2 * step);
   }
-  // The mean with the transpose removes the asymmetry of rounding errors.
+  // The mean of the matrix and its transpose is free of the asymmetry of rounding errors.
   return 0.5 * (k + k.transpose());
 }
 
