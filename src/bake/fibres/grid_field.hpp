@@ -36,7 +36,7 @@ public:
   Modes slowest_modes(const Eigen::MatrixXd& start) const;
   /// The field of least energy with given values at nodes: pairs (node, value).
   Eigen::VectorXd between(const std::vector<std::pair<std::int32_t, double>>& fixed) const;
-  /// The correction that minimises the energy of `field` plus correction.
+  /// The correction (nodal values) that minimises the energy of the sum of `field` and correction.
   Eigen::VectorXd balance(const CornerField& field) const;
 
 private:

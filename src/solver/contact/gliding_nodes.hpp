@@ -20,9 +20,9 @@ inline physics::Pose pose_of(const RigidTransform& from)
   return pose;
 }
 
-/// The sliding nodes of a model with friction, processed one by one in double precision; those on bones in the frame of
-/// their bone. Their tangent planes are found in each step: if a plane were kept for several steps, its replacement
-/// would make the surface's reaction jump, which friction follows.
+/// The sliding nodes of a model with friction, processed one by one in double precision. Nodes on a bone are processed
+/// in the frame of the bone. Their tangent planes are found in each step: if a plane were kept for several steps, its
+/// replacement would make the surface's reaction jump, which friction follows.
 template <class Real>
 class GlidingNodes
 {

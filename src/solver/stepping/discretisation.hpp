@@ -87,7 +87,8 @@ public:
   double stretch_half_sum = 0;               ///< half of that sum over the axes [1/m2]
   std::vector<double> node_mass;             ///< lumped [kg]
   /// Masses for the bound of the highest frequency. Over a group of attached nodes they add up to the same mass as
-  /// node_mass; the mass of a node that does not move with its master is infinite. Empty: node_mass.
+  /// node_mass; the mass of a node that does not move with its master is infinite. If the list is empty, node_mass
+  /// applies.
   std::vector<double> bound_mass;
   /// A held node that follows a master: its displacement relative to the bone is `ratio` times the master's.
   struct Follower
