@@ -30,7 +30,7 @@ ControlCurve ramp_to(const Controls& target, double ramp);
 /// first row all values grow linearly from 0. Throws Error with the file's line.
 ControlCurve read_control_curve(const std::string& path, const Model& model);
 
-/// The curve with other motions of bones: bones whose target differs from rest move there over a ramp.
+/// Returns the curve with its motions of bones replaced: bones whose target differs from rest move there over a ramp.
 ControlCurve with_bones(const ControlCurve& curve, const std::vector<RigidTransform>& targets, double ramp);
 
 }  // namespace frontalis

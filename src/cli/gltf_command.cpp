@@ -172,7 +172,7 @@ std::vector<RenderMesh> meshes_of(const RenderScene& scene)
 Json primitive_of(Glb& glb, RenderMesh mesh)
 {
   Json attributes{ { "POSITION", glb.add(turned(mesh.vertices)) }, { "NORMAL", glb.add(turned(mesh.normals)) } };
-  // Colours of glTF are linear.
+  // Colours at the vertices of glTF are linear, not sRGB.
   for (auto& colour : mesh.colours)
     for (float& channel : colour)
       channel = std::pow(channel, 2.2F);
@@ -212,7 +212,7 @@ void write_gltf(const GltfOptions& options)
   const std::vector<RenderMesh> rest = meshes_of(appearance.scene(face.rest(), rest_controls(*model)));
   Glb glb;
   Json primitives = Json::array();
-  std::vector<int> zeros(rest.size(), -1);  // accessor of as many zeros as each mesh has vertices
+  std::vector<int> no_motion(rest.size(), -1);  // accessor of as many zeros as each mesh has vertices
   for (const RenderMesh& mesh : rest)
     primitives.push_back(primitive_of(glb, mesh));
 
@@ -241,8 +241,8 @@ void write_gltf(const GltfOptions& options)
           zeros = glb.add(Points(from.size()));
         return zeros;
       };
-      primitives[m]["targets"].push_back({ { "POSITION", moved(rest[m].vertices, now[m].vertices, zeros[m]) },
-                                           { "NORMAL", moved(rest[m].normals, now[m].normals, zeros[m]) } });
+      primitives[m]["targets"].push_back({ { "POSITION", moved(rest[m].vertices, now[m].vertices, no_motion[m]) },
+                                           { "NORMAL", moved(rest[m].normals, now[m].normals, no_motion[m]) } });
     }
   }
   progress.clear();

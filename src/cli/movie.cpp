@@ -16,7 +16,7 @@ namespace frontalis
 namespace
 {
 
-// a word of a shell command
+// Quotes a text as one word of a shell command.
 std::string shell_word(const std::string& text)
 {
   std::string out = "'";
@@ -61,7 +61,8 @@ void Movie::finish()
 {
   if (folder_ == path_)
     return;
-  // One palette without dithering, and colours that count as equal within 2 %, leave only what moves in a frame.
+  // All frames have one palette without dithering, and colours that differ by at most 2 % count as equal, so that each
+  // frame stores only what has moved.
   const std::string command =
       fmt::format("convert -delay 1x{:g} -loop 0 {}/frame_*.png +dither -colors 128 +map -fuzz 2% -layers optimize {}",
                   frame_rate_, shell_word(folder_), shell_word(path_));

@@ -12,13 +12,13 @@ namespace frontalis
 class Movie
 {
 public:
-  /// `path`: a file that ends in .gif, or a folder that receives frame_NNNN.png. The model must outlive this. Throws
-  /// Error if the folder of the frames cannot be made, or ImageMagick, which joins them, is missing.
+  /// `path`: a file that ends in .gif, or a folder that receives frame_NNNN.png. The model must outlive this object.
+  /// Throws Error if the folder of the frames cannot be made, or ImageMagick, which joins them, is missing.
   Movie(std::string path, double frame_rate, const Model& model);
 
   /// Draws a frame; the skin is in the face frame, and that of the first frame is the face at rest.
   void add(const SkinState& skin, const Controls& controls);
-  /// Joins the frames and removes their folder, unless the folder is what was asked for. Throws Error if that fails.
+  /// If `path` is a GIF, joins the frames to it and removes their folder. Throws Error if that fails.
   void finish();
 
 private:

@@ -32,7 +32,8 @@ struct RestOptions
   SolverSettings solver;
 };
 
-// The displacements at rest, with everything in equilibrium that acts there, such as the tone of muscles and gravity.
+// Returns the displacements [m] of the face at rest, in equilibrium with all that acts on it there, such as gravity and
+// the tone of muscles.
 Vectors resting(const std::shared_ptr<const Model>& model, const RestOptions& options)
 {
   const auto solver = make_solver(model, options.solver);
@@ -53,7 +54,7 @@ Vectors resting(const std::shared_ptr<const Model>& model, const RestOptions& op
   return displacements;
 }
 
-// the displacements in a pose
+// Returns the displacements [m] in a pose.
 Vectors posed(PosedFace& face, const Model& model, const std::string& pose, double seconds)
 {
   Progress progress;

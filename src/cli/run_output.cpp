@@ -80,7 +80,7 @@ std::string ply_of(const SkinState& skin, const std::vector<std::array<std::int3
   return bytes;
 }
 
-// VTK's XML format of a surface. The numbers follow the text; each array follows its size in bytes.
+// Returns a surface in VTK's XML format. The arrays of numbers come after the XML, each after its size in bytes.
 std::string vtp_of(const SkinState& skin, const SkinState& first,
                    const std::vector<std::array<std::int32_t, 3>>& triangles)
 {

@@ -89,7 +89,7 @@ double parse_quantity(const std::string& text, Dimension dimension, double lengt
     return Error("'" + found + "' " + fault + "; must be a number" +
                  (names.empty() ? " without a unit" : ", alone or with one of the units " + names));
   };
-  // The spellings of YAML and C.
+  // Spellings of infinity and NaN in YAML and C.
   static const std::regex not_finite("[-+]?\\.?(inf|infinity|nan)", std::regex::icase);
   if (std::regex_match(found, not_finite))
     throw refusal("is not finite");

@@ -21,7 +21,7 @@ enum class Dimension
   mass,          ///< kg, g; default: kg
   force,         ///< N, mN; default: N
   spring,        ///< N/m, N/mm; default: N/m
-  drag           ///< force over velocity: Ns/m, kg/s; default: Ns/m
+  drag           ///< force divided by velocity: Ns/m, kg/s; default: Ns/m
 };
 
 /// Range of allowed numbers.

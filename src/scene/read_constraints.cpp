@@ -86,7 +86,7 @@ constexpr ConstraintKind constraint_kinds[] = {
       constraint.crop = read_region(mapping.optional("crop"));
       read_friction(mapping, constraint);
     } },
-  // a body of contact within whose reach there is no tissue
+  // a body that is only shown: within its reach of 0 there is no tissue to touch
   { SceneConstraint::Kind::contact, "shown",
     [](Mapping& mapping, SceneConstraint& constraint, const SceneNames&)
     {

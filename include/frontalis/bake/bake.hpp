@@ -31,7 +31,7 @@ struct BakeReport
     double elsewhere = 0;    ///< part clipped by a range of depth or a crop
     double nurbs = 0;        ///< inside the NURBS volume fitted to its fibres; 0 if there is none
   };
-  /// Strength of a muscle. The model's cross-section is the muscle's volume in voxels over the mean length of its
+  /// Strength of a muscle. The model's cross-section is the muscle's volume in voxels divided by the mean length of its
   /// fibres. If the scene gives a cross-section, the bake multiplies the reference stress by given / cross_section.
   struct MuscleForce
   {

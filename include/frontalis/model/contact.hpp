@@ -25,7 +25,7 @@ struct Contact
   double mass = 0;                ///< [kg]; 0: the body is not pushed, but moves with its bone
   std::array<double, 3> force{};  ///< constant force on the body, local axes [N]
   double spring = 0;              ///< stiffness of the spring to the body's place on its bone [N/m]
-  double damping = 0;             ///< damping force over the body's velocity relative to that place [N s/m]
+  double damping = 0;             ///< damping force divided by the body's velocity relative to that place [N s/m]
 
   // The points of the tissue stand for the vertices of its surface; the bake merges close ones.
   std::vector<std::array<double, 3>> points;  ///< at rest, local [m]
@@ -33,7 +33,7 @@ struct Contact
   Binding binding;                            ///< one entry per point
 };
 
-/// Area of each vertex [m2]: a third of each of its triangles.
+/// Area of each vertex [m2]: a third of the area of the triangles at it.
 std::vector<double> vertex_areas(const TriangleMesh& surface);
 
 /// Sets the points of a contact: the vertices of a bound surface, with their areas.

@@ -31,7 +31,7 @@ struct Model : ModelPresets
   std::vector<std::array<std::int32_t, 3>> voxels;
   std::vector<float> fill;  ///< proportion of the voxel that is tissue, 0..1: scales stiffness and mass
   /// Centroid of the tissue in each voxel, from -1 to 1 along each axis: the point where the voxel's stress is
-  /// computed. Empty if all voxels are whole.
+  /// computed. Empty if it is the centre of every voxel.
   std::vector<std::array<float, 3>> tissue_centre;
 
   // The mixture of voxel e is entries mixture_begin[e] .. mixture_begin[e + 1]; proportions add up to 1.
@@ -63,7 +63,7 @@ struct Model : ModelPresets
     std::int32_t shift = 0;
   };
   std::vector<Flap> flaps;  ///< ascending; empty without gaps
-  /// Two nodes that move as one, where a flap continues in other tissue. Both have the same rest position.
+  /// Two nodes that move as one, where a flap is connected to other tissue. Both have the same rest position.
   struct Joint
   {
     std::int32_t node = 0;

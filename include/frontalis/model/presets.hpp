@@ -20,7 +20,7 @@ struct ModelPresets
     std::array<double, 3> turn{};    ///< rotation vector about `centre` [rad]
     std::array<double, 3> centre{};  ///< [m]
   };
-  /// A named pose of the face. `activation`, by muscle index, -1..1, is added to the muscle's tone.
+  /// A named pose of the face. `activation` has one number per muscle, -1..1, which is added to the muscle's tone.
   struct Expression
   {
     std::string name;

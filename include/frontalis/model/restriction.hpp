@@ -54,7 +54,7 @@ struct AttachedNode
 {
   std::int32_t node = 0;
   std::int32_t master = 0;  ///< a free node; several attached nodes may have the same master
-  /// distance from the surface at rest, the node's over its master's, -1..1; negative beyond the surface
+  /// the node's distance from the surface at rest divided by its master's, -1..1; negative beyond the surface
   double ratio = 0;
   std::int32_t bone = -1;        ///< of a held node: index into Model::bones; -1: the node stands still
   std::int32_t surface = -1;     ///< of a sliding node: index into Model::constraint_surfaces; -1: the node is held

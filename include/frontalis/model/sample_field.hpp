@@ -27,9 +27,9 @@ void one_by_one(std::size_t count, const std::function<void(std::size_t)>& body)
 constexpr double cluster_extent = 9.01;
 
 /// Samples a distance every `spacing` [m] in all bricks (physics/distance_field.hpp) that sliding nodes can reach. A
-/// brick is reached if it is within `travel` [m] of the rest position of a node and if its distance from the surface is
-/// between the smallest and the largest one of these nodes, with a margin of one spacing. Bricks past the rim are left
-/// out.
+/// node can reach a brick within `travel` [m] of its rest position. A brick gets samples if its distances from
+/// the surface include one between the smallest and the largest distance at rest of the nodes that reach it, with a
+/// margin of one spacing. Bricks past the rim are left out.
 SampledField sample_field(const std::vector<std::array<double, 3>>& rest, const Distance& distance, double spacing,
                           double travel, const Loop& loop = one_by_one);
 

@@ -14,7 +14,8 @@ struct Shell
   std::string name;           ///< of the layer in the scene
   double thickness = 0;       ///< [m]
   std::int32_t material = 0;  ///< index into Model::materials, of which only the stiffness at rest counts
-  /// middle of the layer free of moments, local, at rest or creased (rest_shape.hpp); edges as long as a voxel's
+  /// middle surface of the layer in its shape without bending moments: its shape at rest, or with the creases of
+  /// add_creases(); local [m]; its edges are about as long as a voxel's
   TriangleMesh surface;
   Binding binding;  ///< binding of the surface's vertices
 };

@@ -9,16 +9,16 @@
 namespace frontalis
 {
 
-/// A thin stiff film on the skin, such as epidermis on dermis. Its lines are finer than a voxel. The first vertices of
-/// Model::skin, those of the triangles `carried`, follow the voxels; each later vertex halves an edge between two
-/// earlier ones on a smooth surface.
+/// A thin stiff film on the skin, such as epidermis on dermis. It wrinkles in lines that are finer than a voxel. The
+/// first vertices of Model::skin, those of the triangles `carried`, follow the voxels; each later vertex halves an edge
+/// between two earlier ones on a smooth surface.
 struct SkinFilm
 {
   double thickness = 0;     ///< [m]; 0: the skin has no film
   double modulus = 0;       ///< of the film, E / (1 - nu^2) [Pa]
   double poisson = 0;       ///< of the film
   double base_modulus = 0;  ///< of the tissue below it, E / (1 - nu^2) [Pa]
-  /// strain of the film in the skin at rest, equal in all directions; it delays the onset of lines
+  /// tensile strain of the film at rest, equal in all directions of the skin; it delays the onset of lines
   double stretch = 0;
   std::vector<std::array<std::int32_t, 3>> carried;  ///< triangles of the vertices that follow the voxels
   std::vector<std::array<std::int32_t, 2>> parents;  ///< of each later vertex: the two vertices between which it lies

@@ -12,11 +12,11 @@ namespace frontalis
 namespace physics
 {
 
-// A cut voxel is only partly filled with tissue. Its stress is computed at the centroid of the tissue, where the
-// gradient of trilinear displacements also depends on the hourglass modes. Let q be the transformed displacements, and
-// T the linear map that replaces their mean gradient by the gradient at the centroid. The energy of a cut voxel is that
-// of a whole voxel at T q, so that its forces are T^T times the forces at T q. This holds for every material law, and
-// energy and momentum are conserved.
+// A cut voxel is only partly filled with tissue. Its stress is computed at the centroid of the tissue, and not at the
+// centre of the voxel as in a whole voxel. At the centroid the gradient of trilinear displacements also depends on the
+// hourglass modes. Let q be the transformed displacements, and T the linear map that replaces their mean gradient by
+// the gradient at the centroid. The energy of a cut voxel is that of a whole voxel at T q, so that its forces are T^T
+// times the forces at T q. This holds for every material law, and energy and momentum are conserved.
 
 /// The centroid of the tissue in a voxel, from -1 to 1 along each axis; 0 in a whole voxel.
 template <class T>

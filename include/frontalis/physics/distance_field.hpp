@@ -13,7 +13,7 @@ namespace physics
 /// Signed distance from a surface [m], positive on the side of its outward normals, in the surface's frame. The surface
 /// is a sphere, or its distance is sampled on a lattice. Samples are the coefficients of a quadratic B-spline (de Boor,
 /// A Practical Guide to Splines, 1978), which is smooth: its gradient has no kinks, and it rounds the surface's edges
-/// within about one spacing. Plain pointers, so that the same code runs on host and GPU.
+/// within about one spacing. Arrays are plain pointers, so that the same code runs on host and GPU.
 ///
 /// A cell is the cube around one sample. Only cells that nodes may reach are stored, in bricks of 8 x 8 x 8. A brick
 /// repeats one layer of its neighbours' samples, so that it has the 3 x 3 x 3 samples around each of its cells.
@@ -58,7 +58,8 @@ struct FieldPoint
   Vec3<T> offset;
 };
 
-/// Converts the point p [m] in the surface's frame. The cell of a sphere is (0,0,0), at its centre.
+/// Converts the point p [m], in the surface's frame, to a cell and an offset. The only cell of a sphere is (0,0,0), at
+/// its centre.
 FRONTALIS_LAW FieldPoint<double> field_point(const DistanceField& field, const Vec3<double>& p)
 {
   FieldPoint<double> point{ { 0, 0, 0 }, p - Vec3<double>{ field.origin[0], field.origin[1], field.origin[2] } };

@@ -27,8 +27,9 @@ struct FieldSamples
   float value[27];
 };
 
-/// The spline at `place` in a cell, both from enter_cell(). Its second derivatives may jump at the cell's faces, but
-/// are at most 2 / spacing, because distances of neighbouring samples differ by at most the spacing.
+/// Evaluates the spline at `place` in a cell. Place and cell are those of enter_cell(). Its second derivatives may jump
+/// at the cell's faces, but are at most 2 / spacing, because distances of neighbouring samples differ by at most the
+/// spacing.
 template <class T>
 FRONTALIS_LAW FieldValue<T> spline(const FieldSamples& samples, const T& inverse_spacing, const Vec3<T>& place)
 {
@@ -84,8 +85,8 @@ FRONTALIS_LAW FieldValue<T> spline(const FieldSamples& samples, const T& inverse
 
 /// Distance of a point from a sphere as a FieldValue. The point has moved by `way` [m] from a place that is `offset`
 /// [m] from the sphere's centre and `distance` [m] from its surface. If the caller finds `offset` and `distance` in
-/// double precision, single precision suffices here: rounding errors are then in proportion to the way, not to the size
-/// of the sphere.
+/// double precision, single precision suffices here: rounding errors are then in proportion to the distance moved, not
+/// to the size of the sphere.
 template <class T>
 FRONTALIS_LAW FieldValue<T> sphere_value(const T& distance, const Vec3<T>& offset, const Vec3<T>& way)
 {

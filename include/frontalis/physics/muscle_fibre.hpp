@@ -27,7 +27,8 @@ FRONTALIS_LAW T active_tension(T l)
   return N::select(l >= N::of(1.6), N::of(0), f);
 }
 
-/// Passive tension of a fibre over the stress reference: 0 in compression, linear with continuous slope above 1.4.
+/// Passive tension of a fibre divided by the stress reference: 0 in compression, linear with continuous slope above
+/// 1.4.
 template <class T>
 FRONTALIS_LAW T passive_tension(T l)
 {

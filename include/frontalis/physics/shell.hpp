@@ -17,7 +17,7 @@ struct ShellTriangle
   T inverse_area;       ///< 1 over twice the area [1/m2]
   T shear, dilatation;  ///< Lame's constants in plane stress, times thickness and area [J]
   T height[3];          ///< of vertices 3..5 above the triangle's plane [m]
-  T bending[6];         ///< symmetric matrix of the bending energy over heights: 11, 12, 13, 22, 23, 33 [J/m2]
+  T bending[6];         ///< matrix of the bending energy as a form of heights: 11, 12, 13, 22, 23, 33 [J/m2]
 };
 
 template <class T>
@@ -31,10 +31,10 @@ struct ShellReaction
 ///
 /// Membrane: with the singular values s1, s2 of the triangle's deformation gradient,
 ///   E = t A (mu ((s1 - 1)^2 + (s2 - 1)^2) + lambda/2 (s1 + s2 - 2)^2),
-/// where lambda is that of plane stress. This is the energy of linear elasticity in Biot's strain, which is exact for
-/// small strains and any rotation. No deformed state is stiffer than the state at rest, so that the bound of the time
-/// step at rest holds. Only the trace of C = F^T F and the ratio J of areas are needed, because (s1 + s2)^2 = tr C +
-/// 2 J.
+/// where lambda is Lame's first constant of plane stress. This is the energy of linear elasticity in Biot's strain,
+/// which is exact for small strains and any rotation. No deformed state is stiffer than the state at rest, so that the
+/// bound of the time step at rest holds. Only the trace of C = F^T F and the ratio J of areas are needed, because (s1 +
+/// s2)^2 = tr C + 2 J.
 ///
 /// Bending: the heights of the three outer vertices above the triangle's plane determine the quadratic surface through
 /// all six vertices, and so the triangle's curvature (ShellMesh has the matrix). Heights are used rather than angles

@@ -38,11 +38,11 @@ FRONTALIS_LAW bool level_plane(const FieldValue<T>& field, const T& level, Level
   return true;
 }
 
-/// Largest distance [m] of a sliding node from its tangent plane that a step leaves. A smaller error is halved in each
-/// step. Errors arise when the tangent plane of a node is replaced; removing one within a single step would add half
-/// the tissue's stiffness times the squared error to the energy and excite vibrations. The value is 5 um less the error
-/// of a plane that is kept for some steps: plane_error and, where the curvature grows along the way, about as much
-/// again.
+/// After a step, a sliding node is at most this distance [m] away from its tangent plane. A smaller error is halved in
+/// each step. Errors arise when the tangent plane of a node is replaced; removing one within a single step would add
+/// half the tissue's stiffness times the squared error to the energy and excite vibrations. The value is 5 um less the
+/// error of a plane that is kept for some steps: plane_error and, where the curvature grows along the node's path,
+/// about as much again.
 constexpr double error_left = 3.5e-6;
 
 /// Slides a node on the plane normal . u = offset (unit normal): removes the velocity along the normal (Lapeer et al.
@@ -73,8 +73,8 @@ FRONTALIS_LAW Vec3<T> turned_with_normal(const Vec3<T>& from, const Vec3<T>& to,
   return v - (dot(sum, v) / (cosine + Number<T>::of(1))) * sum + (Number<T>::of(2) * dot(from, v)) * to;
 }
 
-/// Coulomb friction in one step: the fraction of its tangential speed that a sliding node loses, from the normal speed
-/// that the constraint removed; 1 if it sticks. The mass cancels.
+/// Fraction of its tangential speed that a sliding node loses to Coulomb friction in one step, in which the constraint
+/// removed the given normal speed; 1 if the node sticks. The mass cancels.
 template <class T>
 FRONTALIS_LAW T friction_loss(const T& coefficient, const T& normal_speed, const T& tangential_speed)
 {

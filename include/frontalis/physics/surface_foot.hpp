@@ -119,8 +119,8 @@ FRONTALIS_LAW Vec3<T> corner_force(const SurfaceTriangle<T>& triangle, const Sur
   return bulging * (triangle.normal[corner] - foot.mean_normal) - (foot.weight[corner] * pressed) * foot.gradient;
 }
 
-/// Force on a corner [N] if the force on the point is `along` the surface. The corners' forces balance that force in
-/// sum and in moment, for which they need parts normal to the triangle.
+/// Force on a corner [N] if the force on the point is `along` [N], which is tangential to the surface. The corners'
+/// forces balance that force in sum and in moment, for which they need parts normal to the triangle.
 template <class T>
 FRONTALIS_LAW Vec3<T> corner_drag(const SurfaceFoot<T>& foot, int corner, const Vec3<T>& along)
 {

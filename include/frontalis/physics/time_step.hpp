@@ -40,7 +40,8 @@ FRONTALIS_LAW T larger_or_none(const T& a, const T& b)
 
 /// Bound of the largest eigenvalue [N/m] of a voxel's stiffness at a deformation, without the stiffening of laws other
 /// than neo-Hookean; NaN if the deformation is not finite. `at_rest`: voxel_stiffness(); `material`: moduli times the
-/// volume of tissue [N m]; weight[j] = (1/h_j^2) over the sum of the three, half_sum: half of that sum [1/m2].
+/// volume of tissue [N m]; weight[j]: 1/h_j^2 divided by the sum over the three axes; half_sum: half of that sum
+/// [1/m2].
 ///
 /// Second derivatives of the neo-Hookean energy (materials/neo_hookean.hpp) are bounded term by term, separately for
 /// the volumetric and the isochoric part. The growth of these bounds since rest is added to the bound at rest. The

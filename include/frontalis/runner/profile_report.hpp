@@ -14,8 +14,9 @@ std::string measured_profile(const Model& model);
 constexpr double sufficient_real_time_factor = 0.95;
 
 /// The real-time factor, in one sentence. If it is not sufficient, the sentence also names the most accurate of the
-/// scene's profiles that would run in real time on this machine. The cost of a profile here is estimated from its
-/// measured cost, scaled by how much slower or faster than measured the model's own profile runs.
+/// scene's profiles that would run in real time on this machine. The cost of another profile on this machine is
+/// estimated as its measured cost times the present cost of the model's own profile, divided by the measured cost of
+/// that profile.
 std::string speed_report(const Model& model, double real_time_factor);
 
 }  // namespace frontalis

@@ -16,7 +16,7 @@ struct ScenePush
   double mass = 0;           ///< [kg]
   Vector3 force{ 0, 0, 0 };  ///< constant force in scene axes [N]
   double spring = 0;         ///< stiffness of the spring that pulls the body to its place on its bone [N/m]
-  double damping = 0;        ///< damping force over the velocity relative to that place [N s/m]
+  double damping = 0;        ///< damping force divided by the velocity relative to that place [N s/m]
 };
 
 struct SceneConstraint

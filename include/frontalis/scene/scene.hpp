@@ -14,7 +14,7 @@
 namespace frontalis
 {
 
-/// Stiff film on the skin, whose lines are finer than voxels (SkinFilm).
+/// Stiff film on the skin, which wrinkles in lines that are finer than voxels (SkinFilm).
 struct SceneFilm
 {
   std::string material;
@@ -36,7 +36,8 @@ struct SceneLandmark
   std::string name;
   Vector3 position{ 0, 0, 0 };  ///< scene coordinates [m]; moved to the closest point of the skin
   int line = 0;
-  /// The generated head whose landmark this is; it replaces `position`. Left out if beyond the published skin.
+  /// The generated head whose landmark this is; it replaces `position`. The landmark is left out if it is beyond the
+  /// published skin.
   std::optional<Shape> head{};
   HeadTemplate::Point point{};  ///< the landmark's definition in the template of `head`
 };

@@ -17,7 +17,7 @@ enum class Instability
   none,
   not_finite,  ///< a displacement is NaN or Inf
   energy,      ///< more energy than muscles, loads and bones can have supplied, or than the ledger explains
-  hourglass,   ///< more energy in hourglass modes alone than that bound
+  hourglass,   ///< more energy in the hourglass modes alone than the bound of all energy allows
   inverted,    ///< more voxels are inverted than allowed
   time_step,   ///< steps were longer than the critical time step
   past_rim,    ///< a sliding node is far past the rim of its surface's field
@@ -52,15 +52,15 @@ struct InstabilityReport
 {
   Instability kind = Instability::none;
   double time = 0;                    ///< simulated time of the finding [s]
-  std::int32_t voxel = -1;            ///< the worst voxel
-  double jacobian = 1;                ///< J of the worst voxel
-  std::array<double, 3> scene{};      ///< centre of the worst voxel at rest, scene frame [m]
-  std::array<double, 3> face{};       ///< centre of the worst voxel at rest, face frame [m]
-  std::vector<std::string> material;  ///< materials of the worst voxel, the one with the largest fraction first
-  std::vector<std::string> muscle;  ///< muscles with fibres in the worst voxel, the one with the highest tension first
-  std::string effect;               ///< name of the effect that is most likely the cause
-  std::string advice;               ///< what to change
-  std::string text() const;         ///< the whole report in two or three sentences
+  std::int32_t voxel = -1;            ///< the voxel where the instability begins
+  double jacobian = 1;                ///< J of this voxel
+  std::array<double, 3> scene{};      ///< centre of this voxel at rest, scene frame [m]
+  std::array<double, 3> face{};       ///< the same point in the face frame [m]
+  std::vector<std::string> material;  ///< materials of this voxel, the one with the largest fraction first
+  std::vector<std::string> muscle;    ///< muscles with fibres in this voxel, the one with the highest tension first
+  std::string effect;                 ///< name of the effect that is most likely the cause
+  std::string advice;                 ///< what to change
+  std::string text() const;           ///< the whole report in two or three sentences
 };
 
 /// Thrown when the motion was stopped. The solver is then at the latest good state, or at the one before if that failed

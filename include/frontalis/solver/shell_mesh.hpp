@@ -10,7 +10,8 @@ namespace frontalis
 {
 
 /// The layers of a model that are shells, made ready for the law of physics/shell.hpp. Their membranes are free of
-/// stress where the voxels carry them at rest, their bending in the shape of Shell::surface.
+/// stress at the positions that the voxels give them at rest, and they are free of bending moments in the shape of
+/// Shell::surface.
 struct ShellMesh
 {
   struct Triangle

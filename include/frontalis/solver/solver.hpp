@@ -98,7 +98,7 @@ public:
   /// settings on the same machine. unpack() throws Error on other bytes, and then leaves the state unchanged.
   virtual std::string pack() = 0;
   virtual void unpack(const std::string& bytes) = 0;
-  /// Number of steps between two checks of the guard, about a hundred times as long as monitor() and save() together.
+  /// Steps between two checks of the guard, which take about a hundred times as long as monitor() and save().
   virtual int steps_per_check() const = 0;
   /// Limits steps to this fraction (0..1] of the safe time step; initially 1. Throws Error if it is out of range.
   virtual void slow_down(double share) = 0;

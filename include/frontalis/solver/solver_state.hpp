@@ -25,7 +25,7 @@ enum class SkinField
   lines    ///< height of fine lines over the skin [m]; 0 in a solver, since FineLines adds the lines to frames later
 };
 
-/// Energies [J], summed in double precision, and the state of the worst voxel.
+/// Energies [J], summed in double precision, and the worst voxel: the one with the smallest J.
 struct Monitor
 {
   double kinetic = 0;
@@ -37,7 +37,7 @@ struct Monitor
   double critical_time_step = 0;     ///< present value from the bound at nodes [s] (physics/time_step.hpp)
   std::int32_t stiffest_voxel = -1;  ///< stiffest voxel at the node that sets the critical step
   double step_share = 0;  ///< latest time step divided by the present critical one (of the model's TimeStepEstimate)
-  /// number of sliding nodes past the rim of their surface's field, which keep their latest plane
+  /// number of sliding nodes past the rim of their surface's field, which keep their latest tangent plane
   std::int64_t past_rim = 0;
   std::int32_t lost_node = -1;  ///< a node that is more than 4 mm past the rim; -1: none
   /// number of contact points deeper in a body than its field reaches, which nothing pushes out

@@ -5,8 +5,8 @@
 namespace frontalis
 {
 
-/// Makes each voxel have its stress at the centroid of its tissue, which is found from samples^3 points. `inside`:
-/// whether a point is in the tissue.
+/// Moves the point where each voxel's stress is computed to the centroid of the voxel's tissue, which is found from
+/// samples^3 points. `inside`: whether a point is in the tissue.
 void cut_at_surface(Model& model, const Condition& inside, int samples);
 
 }  // namespace frontalis

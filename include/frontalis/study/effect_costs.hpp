@@ -30,7 +30,7 @@ struct EffectCosts
   std::vector<EffectCost> effects;
 };
 
-/// The model's voxels with neo-Hookean elasticity alone, one-point integration and scalar hourglass control.
+/// Returns the model's voxels with neo-Hookean elasticity alone, one-point integration and scalar hourglass control.
 Model plain_model(const Model& model);
 
 /// Times the model and copies that each lack one of its effects; `timer` measures the time per step.
@@ -47,8 +47,8 @@ struct PresenceCost
   double base;   ///< time per step without the effect [s]
 };
 
-/// Measures a dense block of 64 x 40 x 40 voxels in which a contiguous fraction along y has one effect. Returns one
-/// entry per presence_shares() for each effect that single voxels or nodes may have.
+/// Measures a dense block of 64 x 40 x 40 voxels in which a contiguous fraction along y has one effect. Returns an
+/// entry for each effect that single voxels or nodes may have and each fraction of presence_shares().
 std::vector<PresenceCost> measure_presence(const SolverSettings& settings, double seconds);
 std::vector<double> presence_shares();  ///< fractions in measure_presence(), ascending from 0 to 1
 

@@ -59,7 +59,7 @@ struct FaceRow
   double size = 0;                ///< length of the displacement, or its component along the published direction [m]
   /// angle between the displacement and the published direction [rad]; NaN: only a component is published
   double angle = 0;
-  /// time after which the landmark stays within 3 % of its displacement from its settled position [s]
+  /// time after which the landmark stays close to its settled position, within 3 % of its displacement [s]
   double settled = 0;
   double least = 0, most = 0;               ///< smallest and largest `size` that pass [m]; NaN: none is published
   double settles = 0;                       ///< largest `settled` that passes [s]; 0: every value passes

@@ -12,7 +12,7 @@ struct RingHole
   Vector3d axis;  ///< unit vector
 };
 
-/// The largest hole. There is none if its area is less than a twentieth of the area within the muscle's outline.
+/// Returns the largest hole; none if its area is less than a twentieth of the area within the muscle's outline.
 std::optional<RingHole> find_hole(const MuscleGrid& grid);
 
 /// Two coordinates of points of a muscle, both from 0 to 1: u along the fibres and v across them, along the muscle's
@@ -23,11 +23,12 @@ struct FibreCoordinates
   std::vector<std::array<double, 2>> samples;  ///< (u, v) at the samples of the muscle's surface; NaN outside all cells
   double length = 0;                           ///< mean distance from u = 0 to u = 1 [m]
   double width = 0;                            ///< mean distance from v = 0 to v = 1 [m]
-  /// Ratio of the length along u to that along the next best direction. Infinite if u follows from ends or a ring.
+  /// Ratio of the muscle's length along u to that along the second slowest mode of heat conduction. Infinite if u
+  /// follows from ends or a ring.
   double distinctness = 0;
 };
 
-/// Ring or ends that determine the fibre direction. Without them the muscle's shape does.
+/// Ring or ends from which the fibre direction follows. Without them it follows from the muscle's shape.
 struct FibreGuide
 {
   std::optional<RingHole> ring;

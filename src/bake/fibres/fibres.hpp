@@ -33,9 +33,9 @@ void add_fibres(const Scene& scene, const std::vector<MuscleFibres>& fibres, con
 /// the fibre directions anew.
 void spread_fibres(Model& model);
 
-/// Multiplies each muscle's reference stress by the cross-section that the scene gives, if any, divided by that of the
-/// model, so that the muscle's force is that of people. The cross-section of the model is the muscle's volume in voxels
-/// divided by the mean length of its fibres. Lists all muscles in the report.
+/// Scales the reference stress of each muscle for which the scene gives a cross-section, by the given cross-section
+/// divided by the model's. The muscle is then as strong as in people. The model's cross-section is the muscle's volume
+/// in voxels divided by the mean length of its fibres. Lists all muscles in the report.
 void scale_strength(const Scene& scene, const std::vector<MuscleFibres>& fibres, const LocalFrame& frame, Model& model,
                     BakeReport* report);
 

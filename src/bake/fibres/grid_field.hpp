@@ -27,7 +27,8 @@ public:
   };
 
   GridField(const MuscleGrid& grid, const std::vector<Eigen::Matrix3d>& tensors);
-  /// D = d d^T + `rest` I for unit vectors d. The first term is integrated at one point to avoid locking.
+  /// Sets D = d d^T + `rest` I in each cell, where the unit vector d is the cell's entry of `directions`. The first
+  /// term is integrated at one point to avoid locking.
   GridField(const MuscleGrid& grid, const std::vector<Vector3d>& directions, double rest);
 
   /// The non-constant eigenmodes with the lowest ratio of energy to mean square, found by subspace iteration. There is
@@ -35,7 +36,7 @@ public:
   Modes slowest_modes(const Eigen::MatrixXd& start) const;
   /// The field of least energy with given values at nodes: pairs (node, value).
   Eigen::VectorXd between(const std::vector<std::pair<std::int32_t, double>>& fixed) const;
-  /// The correction that minimises the energy of `field` plus correction.
+  /// The correction (nodal values) that minimises the energy of the sum of `field` and correction.
   Eigen::VectorXd balance(const CornerField& field) const;
 
 private:
@@ -66,7 +67,7 @@ std::vector<SurfaceDirection> surface_directions(const MuscleGrid& grid, double 
 std::vector<Eigen::Matrix3d> conductivities(const std::vector<SurfaceDirection>& directions);
 
 /// Weighted mean of the surface's direction and of the gradient, smoothed over `reach` [m]. The weight of the surface's
-/// direction is its certainty times the cosine of the angle between the two, which is small where a muscle is cut
+/// direction is its certainty times the cosine of the angle between the two. This cosine is small where a muscle is cut
 /// straight.
 std::vector<SurfaceDirection> blend(const MuscleGrid& grid, double reach,
                                     const std::vector<SurfaceDirection>& directions,

@@ -7,11 +7,12 @@ namespace frontalis
 namespace
 {
 
-// relative, for rounding in double and in single precision
+// Relative margins above the rounding errors of double and of single precision.
 constexpr double margin = 1e-9;
 constexpr double float_margin = 1e-5;
-// Lists pay only for many points: the triangles around a cube are gathered after `alone` points in it, and those of its
-// eighths, where they are more than four times `few_groups`, after `few_points`.
+// Making a list of the triangles near a cube saves time only if many points lie in the cube. The list is made after
+// `alone` points in it. After `few_points` points, if the list has more than `few_groups` groups, lists are made for
+// the eighths of the cube in which points lie.
 constexpr int alone = 4, few_points = 16;
 constexpr std::size_t few_groups = 8;
 
@@ -51,7 +52,7 @@ ClosestPoint ClusterSearch::closest(const Vector3d& p, double bound)
     std::int8_t feature = 0;
     const Vector3d q = closest_on_triangle(p, a, b, c, feature);
     const double d = (q - p).squaredNorm();
-    // as in TriangleTree::closest(): of triangles equally far the one with the lowest number
+    // of triangles that are equally far, take the one with the lowest number, as TriangleTree::closest() does
     if (d < squared || (d == squared && (best.triangle < 0 || triangle < best.triangle)))
     {
       squared = d;
@@ -59,7 +60,7 @@ ClosestPoint ClusterSearch::closest(const Vector3d& p, double bound)
       latest_ = index;
     }
   };
-  // the triangle of the latest point is probably near, so that most others need no closer look
+  // the triangle found last is probably near; with its distance as limit, few others need a closer look
   if (latest_ >= 0)
     ask(latest_);
   const Eigen::Array3f at = (p - cubes_[cube].centre).cast<float>();
@@ -99,7 +100,8 @@ void ClusterSearch::gather()
   latest_ = -1;
   groups_.clear();
   add_groups(cubes_[0]);
-  // If the first point had a bound, triangles beyond it were not gathered. Others that are missing are never closest.
+  // If the first point has no triangle within its bound, triangles beyond `reach` are missing. Otherwise no missing
+  // triangle is the closest to a point of the cube.
   reach_ = first_.triangle < 0 ? reach * (1 - margin) : std::numeric_limits<double>::infinity();
 }
 
@@ -133,15 +135,16 @@ void ClusterSearch::add_groups(Cube& cube)
   Near nearest{ -1, std::numeric_limits<double>::infinity(), Vector3d::Zero() };
   for (Near& near : near_)
   {
-    // rounding spoils the direction of very short ways
+    // rounding errors spoil the direction of a very short vector
     near.away *= near.distance > 1e-3 * radius ? 1 / near.distance : 0;
     if (near.distance < nearest.distance)
       nearest = near;
   }
-  // A point of the cube is x from its centre, |x| <= radius. From the nearest triangle T, in the direction t at the
-  // distance d from the centre, it is at most |d t + x| away, which exceeds d + t . x by at most `bend`. From any other
-  // triangle, in the direction a at the distance e, it is at least e + a . x away. So T is the nearer one for all x if
-  // e > d + bend + |t - a| radius.
+  // Let x be the vector from the cube's centre to a point of the cube, |x| <= radius. Let d be the distance of the
+  // nearest triangle T from the centre, and t the unit vector from T to the centre; e and a are those of another
+  // triangle. The distance of the point from T is at most |d t + x|, which exceeds d + t . x by at most `bend`. Its
+  // distance from the other triangle is at least e + a . x. T is therefore nearer to all points of the cube if e > d +
+  // bend + |t - a| radius.
   const double d = nearest.distance, bend = d > 0.5 * radius ? 0.5 * radius * radius / d : 2 * (radius - d);
   cube.begin = groups_.size();
   std::size_t used = 4;

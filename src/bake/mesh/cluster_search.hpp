@@ -5,9 +5,9 @@
 namespace frontalis
 {
 
-/// Closest points of a tree for points that come in clusters, such as the samples of a lattice: the triangles that can
-/// be the closest to a point of a cube are kept, and those of its eighths where many points are asked for. Results are
-/// those of TriangleTree::closest(). Not thread-safe.
+/// Finds the closest points of a tree's triangles to points that come in clusters, such as the samples of a lattice. It
+/// lists the triangles that can be the closest to a point of a cube and, where there are many points, those for each
+/// eighth of the cube. Results are those of TriangleTree::closest(). Not thread-safe.
 class ClusterSearch
 {
 public:
@@ -45,13 +45,13 @@ private:
 
   const TriangleTree* tree_;
   double extent_;
-  ClosestPoint first_;                    ///< of the first point of the present cube, its centre
-  int asked_ = 0;                         ///< number of further points in the present cube
-  std::vector<Cube> cubes_;               ///< the present one and its eighths; empty: no point was asked for yet
+  ClosestPoint first_;       ///< the point closest to the centre of the present cube, which is the first point in it
+  int asked_ = 0;            ///< number of later points in the present cube
+  std::vector<Cube> cubes_;  ///< the present cube and its eighths; empty: there was no search yet
   std::array<std::size_t, 8> eighths_{};  ///< indices in cubes_; 0: not made yet
   double reach_ = 0;  ///< triangles farther than this from the first cube's centre may be missing [m]
   std::vector<Group> groups_;
-  std::vector<Near> near_;    ///< of the cube that is made
+  std::vector<Near> near_;    ///< triangles of the cube that is being made
   std::int32_t latest_ = -1;  ///< index in TriangleTree::order_ of the triangle found last; -1: none
 };
 

@@ -78,7 +78,7 @@ bool open_and_inside_out(const TriangleMesh& mesh)
   return strongest < -0.75;
 }
 
-/// The regions that those components of a mesh that have crossing triangles enclose twice or inside-out.
+/// Regions that a mesh encloses twice or inside-out. Only components of the mesh with crossing triangles are examined.
 struct Overlap
 {
   double share = 0;  ///< volume of these regions divided by the whole enclosed volume

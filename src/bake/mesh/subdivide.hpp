@@ -14,8 +14,8 @@ struct PolygonMesh
   std::vector<std::string> group_names;
 };
 
-/// Reads the vertices and faces of an OBJ file with coordinates in `unit` [m]. Unlike a general importer, it keeps the
-/// order of the vertices. Throws Error naming the file and line.
+/// Reads the vertices and faces of an OBJ file with coordinates in `unit` [m]. Unlike import_mesh(), this function
+/// keeps the order of the vertices. Throws Error naming the file and line.
 PolygonMesh read_polygons(const std::string& file, double unit);
 
 /// Adds the mirror image at the plane of the coordinate `axis` = 0. Vertices less than 1e-9 m away from the plane are

@@ -128,8 +128,8 @@ TriangleMesh join_surfaces(const std::vector<const PreparedSurface*>& parts)
       winding[s][i] = parts[s]->tree().winding_number(p);
   }
 
-  // The surfaces may be oriented either way. The combination is chosen whose sums of winding numbers are nearest to
-  // whole numbers. If these sums are negative, all surfaces are flipped.
+  // The surfaces may be oriented either way. Of all combinations of orientations, the one whose sums of winding numbers
+  // are nearest to whole numbers is chosen. If these sums are negative, all surfaces are flipped.
   constexpr std::size_t most_combined_parts = 12;
   const std::size_t combinations = parts.size() > most_combined_parts ? 1 : std::size_t{ 1 } << (parts.size() - 1);
   const auto is_flipped = [](std::size_t combination, std::size_t part)

@@ -10,7 +10,8 @@ struct ClosestPoint
   Vector3d point{ 0, 0, 0 };
   double distance = 0;         ///< [m]
   std::int32_t triangle = -1;  ///< -1: no triangle lies within the bound
-  /// Part of the triangle at the point. 0: face; 1 to 3: edge from corner `feature` - 1; 4 to 6: corner `feature` - 4.
+  /// The part of the triangle on which the point lies. 0: face; 1 to 3: edge from corner `feature` - 1; 4 to 6: corner
+  /// `feature` - 4.
   std::int8_t feature = 0;
 };
 

@@ -7,8 +7,8 @@ namespace frontalis
 namespace
 {
 
-/// Finds the first node of a group that has an entry, and gives this entry to all nodes of the group. Returns false if
-/// no node has an entry.
+/// Finds the first node of a group that has an entry in the map, and gives this entry to all nodes of the group.
+/// Returns false if no node has an entry.
 template <class Entry>
 bool share(const std::vector<std::int32_t>& group, std::map<std::int32_t, Entry>& entries)
 {

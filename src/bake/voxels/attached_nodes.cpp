@@ -16,7 +16,7 @@ namespace
 
 bool attaches(const Scene& scene, const SceneConstraint& constraint)
 {
-  // A constraint with a `within` of its own keeps its nodes instead of attaching tissue.
+  // A constraint with a `within` of its own restricts its nodes instead of attaching tissue at the surface.
   return scene.accuracy.boundary == "true" && constraint.restricts_nodes() && constraint.within < 0;
 }
 
@@ -31,8 +31,8 @@ struct Candidate
 };
 
 /// Finds whether the tissue around a node continues in a voxel near it, so that the node may follow a node of that
-/// voxel. In a model with flaps, voxels at the same place or side by side may belong to the two sides of a gap. Nodes
-/// then do not connect them, or only around the end of the gap.
+/// voxel. In a model with flaps, voxels at the same place or side by side may belong to the two sides of a gap. Such
+/// voxels are connected by no shared nodes, or only around the end of the gap.
 class ContinuousTissue
 {
 public:
@@ -305,8 +305,8 @@ private:
     return nearest;
   }
 
-  /// The side of a surface with tissue, +1 or -1. If both sides have tissue: the side of a node at the distance
-  /// `outwards`.
+  /// The side of a surface on which the tissue is, +1 or -1. If it is on both sides: the side of a node whose signed
+  /// distance from the surface is `outwards`.
   double side_at(const PreparedSurface& surface, double outwards)
   {
     const auto known = side_.find(&surface);

@@ -15,8 +15,8 @@ namespace
 constexpr std::size_t grain = 1024;
 constexpr double farthest_landmark = 20e-3;  // largest distance from the skin [m]
 
-// Number of longest edges per wavelength of fine lines. Halving leaves edges of three quarters of the longest on
-// average, so that a wavelength has six edges.
+// Wavelength of fine lines divided by the longest edge allowed. Halving leaves edges whose mean length is three
+// quarters of the longest, so that a wavelength has six edges.
 constexpr double edges_per_line = 4.5;
 constexpr double vertices_per_edge_area = 3.2;  // measured number of vertices per square of the longest edge
 constexpr double most_vertices = 2e6;

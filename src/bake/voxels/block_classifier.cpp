@@ -17,7 +17,7 @@ BlockClassifier::BlockClassifier(const Volumes& volumes, const Grid& grid, int s
       body_here_(volumes.bodies()),
       depth_here_(volumes.depth_fields().size())
 {
-  // a cube around the middle that is used has all samples of the voxel
+  // the cubes are a little larger than a voxel, because their centre middle_ is beside the centre of the voxel
   for (const auto& field : volumes.depth_fields())
     nearby_depth_.push_back({ ClusterSearch(field.surface->tree(), 1.03 * grid.spacing.maxCoeff()) });
   // the first sample is the middle of the voxel

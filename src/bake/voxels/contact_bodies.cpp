@@ -18,10 +18,10 @@ namespace
 {
 
 constexpr double largest_spacing = 0.5e-3;  // largest distance between samples of the field [m]
-constexpr double spacing_share = 0.5;       // largest distance between samples, over the shortest voxel edge
-constexpr double reach_share = 2;           // reach of the field from a surface, over the longest voxel edge
+constexpr double spacing_share = 0.5;       // largest distance between samples, in shortest voxel edges
+constexpr double reach_share = 2;           // reach of the field from a surface, in longest voxel edges
 constexpr double deepest_inside = 20e-3;    // reach of the field into a body, more than the thickness of tissue [m]
-constexpr double overlap_share = 0.5;       // largest depth of tissue in a body at rest, over the shortest voxel edge
+constexpr double overlap_share = 0.5;       // largest depth of tissue in a body at rest, in shortest voxel edges
 
 // A closed surface. The distance from it is positive outside.
 struct Body
@@ -167,9 +167,9 @@ std::int32_t bone_of(const std::string& name, Model& model)
   return bone;
 }
 
-// Merges the points that lie in the same eighth of a voxel into one at their centroid, with the area of all of them.
-// More points distribute a pressure no better to the nodes of voxels, but each of them costs time. The two sides of a
-// sheet that is thinner than that stay apart. `surface` has the points as its vertices.
+// Merges the points that lie in the same eighth of a voxel into one point at their centroid, with the sum of their
+// areas. More points distribute a pressure no better to the nodes of voxels, but each of them costs time. The two sides
+// of a sheet that is thinner than that stay apart. `surface` has the points as its vertices.
 void thin_out(Contact& contact, const TriangleMesh& surface)
 {
   const std::vector<Vector3d> normals = vertex_normals(surface);
@@ -249,7 +249,7 @@ void bind_contacts(const Scene& scene, const PreparedSurfaces& surfaces, const L
     contact.friction = constraint.friction;
     contact.reach = reach_share * *std::max_element(model.spacing.begin(), model.spacing.end());
 
-    // nothing touches what is only shown
+    // no tissue touches a body that is only shown
     if (constraint.within == 0)
     {
       for (const std::string& name : constraint.surfaces)

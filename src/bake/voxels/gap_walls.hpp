@@ -18,8 +18,8 @@ public:
   /// Throws Error if more than 64 surfaces bound the tissue.
   GapWalls(const Volumes& volumes, const PreparedSurfaces& surfaces);
 
-  /// For each cell of the grid, in the order of places, whether a slit passes through it. With `thin_gaps`, also
-  /// whether it has a gap next to a wall that is less than 2.2 voxel edges wide.
+  /// For each cell of the grid, x fastest, whether a slit passes through it. With `thin_gaps`, also whether it has a
+  /// gap next to a wall that is less than 2.2 voxel edges wide.
   std::vector<char> cells_with_gaps(const Volumes& volumes, const Grid& grid, bool thin_gaps,
                                     BakeMonitor& monitor) const;
 

@@ -142,7 +142,7 @@ void Gaps::find_parts(Tissue& tissue) const
       if ((tissue.points[i] - tissue.points[j]).squaredNorm() < near * near && sets.find_set(i) != sets.find_set(j) &&
           !walls_->part(tissue.points[i], tissue.enclosing[i], tissue.points[j], tissue.pieces))
         sets.union_set(i, j);
-  // Sorts by the number of the scene's samples and, where that is equal, by the first point.
+  // The parts are sorted by the number of the scene's samples in them, the largest number first.
   const int all = samples_ * samples_ * samples_;
   std::map<std::size_t, int> samples_in;
   for (std::size_t i = 0; i < count; ++i)
@@ -162,7 +162,7 @@ void Gaps::find_parts(Tissue& tissue) const
   }
 }
 
-/// Finds the parts of a voxel and of a later neighbour that are joined.
+/// Finds which parts of a voxel are joined to which parts of a later neighbour.
 void Gaps::join_to(Tissue& tissue, const Tissue& other) const
 {
   const auto box_of = [&](const Tissue& of)
@@ -197,7 +197,7 @@ void Gaps::join_to(Tissue& tissue, const Tissue& other) const
       }
   if (any)
     return;
-  // With so little tissue no points are close, so that the nearest two are tested.
+  // If the voxels have so little tissue that no two points are close to each other, the nearest two are tested.
   double best = std::numeric_limits<double>::max();
   std::pair<std::size_t, std::size_t> nearest;
   for (std::size_t i = 0; i < tissue.points.size(); ++i)

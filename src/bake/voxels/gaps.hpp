@@ -9,7 +9,7 @@
 namespace frontalis
 {
 
-/// Separates the two sides of slits and of gaps that are thinner than voxels.  In each voxel near a gap, two points of
+/// Separates the two sides of slits and of gaps that are thinner than voxels. In each voxel near a gap, two points of
 /// the tissue are joined if the line between them does not leave the tissue and no slit cuts it. Points that are joined
 /// form a part; parts of neighbouring voxels are joined by the same rule. A voxel with several parts is replaced by one
 /// voxel per part, with its own filling. Around a point of the grid, voxels that are joined form a group, and each

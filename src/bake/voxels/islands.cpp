@@ -9,7 +9,8 @@ namespace frontalis
 namespace
 {
 
-/// Index of each voxel's component, connected by faces. `sizes` receives the number of voxels in each component.
+/// Returns for each voxel the index of its component. Voxels of a component are connected by faces. `sizes` receives
+/// the number of voxels in each component.
 std::vector<std::int32_t> face_components(const Model& model, std::vector<std::size_t>& sizes)
 {
   const VoxelIndex index(model.voxels, model.size);

@@ -26,8 +26,8 @@ int longest_rows(const Grid& grid, const Voxels& voxels)
   return static_cast<int>(std::min_element(rows.begin(), rows.end()) - rows.begin());
 }
 
-/// Moves voxels of flaps to planes above those of the body. An empty plane of voxels lies below each flap, so that it
-/// shares no node with the body or a lower flap.
+/// Moves the voxels of flaps (Model::Flap) to planes above all others. An empty plane of voxels lies below each flap,
+/// so that the flap shares no node with the voxels below it.
 void place_flaps(const Voxels& voxels, std::vector<VoxelPlace>& places, Model& model)
 {
   if (voxels.flap.empty())
@@ -51,8 +51,8 @@ void place_flaps(const Voxels& voxels, std::vector<VoxelPlace>& places, Model& m
   }
 }
 
-/// Joins the nodes of flaps to nodes of lower flaps or of the body. `order`: for each voxel of the model its index in
-/// `voxels`; `at`: the grid points of the joints at rest.
+/// Joins the nodes of flaps to nodes of lower flaps or of voxels in no flap. `order`: for each voxel of the model its
+/// index in `voxels`; `at`: the grid points of the joints at rest.
 void join_flaps(const Voxels& voxels, const std::vector<std::uint32_t>& order, const std::vector<VoxelPlace>& at,
                 Model& model)
 {

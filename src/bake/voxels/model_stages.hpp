@@ -7,14 +7,15 @@ namespace frontalis
 
 struct MuscleFibres;
 
-/// Number of the flap that has a voxel of the model, from 1; 0: the voxel is in the body.
+/// Number, from 1, of the flap (Model::Flap) to which a voxel of the model belongs; 0: it is in no flap.
 inline int flap_of(const Model& model, std::size_t voxel)
 {
   const auto above = [&](const Model::Flap& flap) { return flap.first > model.voxels[voxel][2]; };
   return static_cast<int>(std::find_if(model.flaps.begin(), model.flaps.end(), above) - model.flaps.begin());
 }
 
-/// Scene to local coordinates: local axis a is scene axis (first + a) mod 3; the origin is a node of the grid.
+/// Conversion between scene and local coordinates: local axis a is scene axis (first + a) mod 3; the origin is a node
+/// of the grid.
 struct LocalFrame
 {
   int first = 0;
@@ -52,7 +53,8 @@ struct LocalFrame
   {
     return to_scene(to_vector(model.spacing).cwiseProduct(Vector3d(i, j, k)));
   }
-  /// The voxel to whose tissue a point near a gap belongs; -1 elsewhere. Local coordinates.
+  /// Index of the voxel to whose tissue a point near a gap belongs; -1 for a point that is not near a gap. Local
+  /// coordinates.
   std::int32_t owner(const Model& model, const VoxelIndex& index, const Vector3d& local) const;
   Vector3d voxel_centre(const Model& model, std::size_t e) const
   {
@@ -72,7 +74,8 @@ void copy_settings(const Scene& scene, const LocalFrame& frame, Model& model);
 /// Copies the poses of bones in expressions, action units and the demo. The model must have its bones.
 void copy_poses(const Scene& scene, Model& model);
 
-/// Lowers the weights of muscles where the scene weakens them. The last stage, because reports count whole muscles.
+/// Lowers the weights of muscles where the scene weakens them. This is the last stage, because reports describe the
+/// muscles at full strength.
 void weaken_muscles(const Scene& scene, const LocalFrame& frame, Model& model);
 
 /// Finds rigid, sliding and prescribed nodes and fills bones, constraint surfaces and loads of kind displacement.
@@ -83,8 +86,9 @@ void weaken_muscles(const Scene& scene, const LocalFrame& frame, Model& model);
 void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const std::vector<MuscleFibres>& fibres,
                     const LocalFrame& frame, Model& model, BakeMonitor& monitor);
 
-/// Chooses among the nodes `near` a bone those where a muscle originates: corners of its voxels in one end (15 %) of
-/// the fibres' length, the end with the larger proportion of near nodes. Empty if neither end is near.
+/// Chooses among the nodes `near` a bone those at which a muscle originates. They are corners of the muscle's voxels in
+/// one of its ends, which are 15 % of the fibres' length: the end with the larger proportion of near nodes. Empty if
+/// neither end has a near node.
 std::vector<std::size_t> origin_nodes(std::size_t muscle, const MuscleFibres& fibres, const std::vector<bool>& near,
                                       const LocalFrame& frame, const Model& model);
 
@@ -92,19 +96,19 @@ std::vector<std::size_t> origin_nodes(std::size_t muscle, const MuscleFibres& fi
 /// constraints without a `within` of their own.
 std::vector<const PreparedSurface*> attaching_surfaces(const Scene& scene, const PreparedSurfaces& surfaces);
 
-/// With `boundary: true`, turns rigid and sliding nodes of constraints without `within` into attached nodes. To find
-/// the master of a node, goes along the surface's normal, one to three voxel edges high, to the first voxel with free
-/// corners only, and takes one of them. If there is none, tissue is too thin: nodes up to half an edge above the
-/// surface stay restricted, and the others become free. Nodes that slide with friction are not attached.
+/// With `boundary: true`, turns rigid and sliding nodes of constraints without `within` into attached nodes. The master
+/// of a node is a corner of the first voxel with free corners only, one to three voxel edges above the surface along
+/// its normal, or of another such voxel near it. If there is none, the tissue is too thin: nodes up to half an edge
+/// above the surface stay restricted, and the others become free. Nodes that slide with friction are not attached.
 void attach_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,
                   BakeMonitor& monitor);
 
-/// Makes the joints of flaps agree with the restrictions of their nodes. Joined nodes rest at the same place, so they
-/// are restricted alike, unless the tissue on the two sides of a gap is attached to a bone differently.
+/// Makes the joints of flaps agree with the restrictions of their nodes. Joined nodes rest at the same place and are
+/// therefore restricted alike, unless the tissue on the two sides of a gap is attached to a bone differently.
 void settle_joints(Model& model);
 
-/// Removes loose components of voxels, which only common faces connect, not edges or corners. Keeps the largest
-/// component and all others with a restricted node and at least a hundredth of the largest one's voxels.
+/// Removes loose components of voxels. Common faces connect voxels, common edges or corners do not. Keeps the largest
+/// component, and all others that have a restricted node and at least a hundredth as many voxels as the largest.
 void remove_islands(Model& model, BakeMonitor& monitor);
 
 /// Mixes the material of each layer that is too thin to be sampled into the voxels through which its surface passes.

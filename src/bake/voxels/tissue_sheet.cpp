@@ -44,8 +44,8 @@ bool any_point(const std::array<Vector3d, 3>& v, double spacing, const Ask& ask)
 }
 
 /// Extends a selection of triangles across their edges by up to `travel`, as long as normals differ by at most 78
-/// degrees from that of the selected triangle where the way began: so it goes round the rim of a bone, but not behind
-/// the bone. Enters only triangles for which enters(triangle) is true.
+/// degrees from that of the selected triangle where the path began. The selection thus goes round the rim of a bone,
+/// but not behind the bone. Enters only triangles for which enters(triangle) is true.
 template <class Enters>
 void grow(const TriangleMesh& mesh, std::vector<bool>& selected, const Enters& enters)
 {
@@ -63,7 +63,7 @@ void grow(const TriangleMesh& mesh, std::vector<bool>& selected, const Enters& e
   {
     double way;
     std::size_t triangle;
-    Vector3d at, normal;  ///< middle of the edge of entry; normal of the triangle where the way began
+    Vector3d at, normal;  ///< middle of the edge of entry; normal of the triangle where the path began
     bool operator<(const Entry& other) const { return way > other.way; }
   };
   std::priority_queue<Entry> entries;
@@ -101,7 +101,7 @@ std::optional<std::pair<Vector3d, double>> sphere_of(const PreparedSurface& surf
   const TriangleMesh& mesh = surface.mesh();
   if (!surface.closed() || mesh.vertices.size() < 12)
     return std::nullopt;
-  // |v - m|^2 = 2 (c - m) . (v - m) + k for all vertices v, with any point m
+  // for a sphere with centre c and any point m, |v - m|^2 = 2 (c - m) . (v - m) + k with the same k at all vertices v
   const Vector3d middle = surface.box().center();
   Eigen::MatrixX4d a(mesh.vertices.size(), 4);
   Eigen::VectorXd b(mesh.vertices.size());
@@ -158,8 +158,8 @@ bool faces(const std::vector<const PreparedSurface*>& others, const std::array<V
                      });
 }
 
-/// For each triangle of a surface its number in the sheet, which has them in the same order; -1: it is not in the
-/// sheet.
+/// Returns for each triangle of a surface its number in the surface's sheet, which has the triangles in the same order,
+/// or -1 if it is not in the sheet.
 std::vector<std::int32_t> numbers_in_sheet(const SlidingSurface& surface)
 {
   const TriangleMesh &whole = surface.whole->mesh(), &sheet = surface.sheet->mesh();
@@ -224,9 +224,9 @@ private:
   std::vector<std::int32_t> number_;  ///< see numbers_in_sheet()
 };
 
-/// Distance from several sheets: a mean of the nearest one and of others that are at most 1 mm farther. Others have
-/// more weight the nearer they are and the more they are parallel to the nearest. So a node can pass from one bone to
-/// the next across a gap between their sheets, and sheets that face each other stay separate.
+/// Distance from several sheets: a mean of the nearest one and of others that are at most 1 mm farther. The others have
+/// more weight the nearer they are, and the more nearly parallel to the nearest one. A node can thus pass from one bone
+/// to the next across a gap between their sheets, and sheets that face each other stay separate.
 SurfaceDistance distance_from(const std::vector<SheetDistance>& sheets, std::vector<SheetDistance::Searches>& searches,
                               const Vector3d& p)
 {
@@ -305,7 +305,7 @@ TriangleMesh tissue_sheet(const PreparedSurface& surface, double side, const std
     return mesh;
   const VoxelIndex tissue(model);
   const Vector3d spacing = to_vector(model.spacing);
-  // an almost empty voxel may be bone on the other side of a suture
+  // an almost empty voxel may lie mostly in the bone on the other side of a suture
   constexpr double least_fill = 0.2;
   const auto is_tissue = [&](const Vector3d& p)
   {

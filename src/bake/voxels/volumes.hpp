@@ -36,18 +36,18 @@ public:
   struct Entry
   {
     const Volume* volume = nullptr;
-    std::optional<std::size_t> closed_by;  ///< body
-    std::vector<std::size_t> inside;       ///< bodies
-    std::vector<std::size_t> outside;      ///< bodies: those of `outside`, then those of `without`
-    std::size_t hiding = 0;                ///< number of bodies, the first of `outside`, that hide points behind them
-    std::optional<std::size_t> within;     ///< depth field
+    std::optional<std::size_t> closed_by;  ///< index of a body
+    std::vector<std::size_t> inside;       ///< indices of bodies
+    std::vector<std::size_t> outside;      ///< indices of bodies: those of `outside`, then those of `without`
+    std::size_t hiding = 0;                ///< how many of these bodies, the first ones, hide the points behind them
+    std::optional<std::size_t> within;     ///< index of a depth field
     int material = -1;                     ///< index; -1: none
     int muscle = -1;                       ///< index; -1: none
     std::vector<Band> bands;
 
     /// Whether the volume excludes points if an `outside` body lies between them and the surface of the depth field.
     bool needs_sight() const { return within && hiding > 0; }
-    /// Whether condition(body index) is true for any of the hiding bodies.
+    /// Whether condition(index) is true for any of the bodies that hide points; see `hiding`.
     template <class Condition>
     bool any_hiding(const Condition& condition) const
     {

@@ -43,7 +43,8 @@ struct Voxels
   std::vector<float> fill;
   std::vector<std::array<float, 3>> centre;  ///< centroid of the tissue, from -1 to 1 along each axis
   Shares materials, muscles;
-  /// The flap of each voxel (Model::flaps), 0 for the body; or empty. Voxels of different flaps may share a place.
+  /// The number of each voxel's flap (Model::Flap), 0: it is in no flap; empty if there are no flaps. Voxels of
+  /// different flaps may share a place.
   std::vector<std::int8_t> flap;
   /// Two voxels of different flaps that are joined at a point of the grid. The first is in the lower flap.
   struct Joint
@@ -54,7 +55,8 @@ struct Voxels
   std::vector<Joint> joints;
   /// Size of each volume of the scene in the tissue [m3], before voxels with too little tissue are left out.
   std::vector<double> volume_size;
-  /// For each volume with layers, the size of each band and, as last entry, of the rest of the volume [m3].
+  /// For each volume with layers, the size of each band (Volumes::Band) and, as last entry, of the rest of the volume
+  /// [m3].
   std::vector<std::vector<double>> band_size;
 
   /// Adds the voxels of another block of the same grid.

@@ -15,7 +15,7 @@ namespace
 
 using Vector = physics::Vec3<double>;
 
-// Asks the memory for the samples around x, in the frame of the field.
+// Prefetches the samples around x, which is in the frame of the field.
 void fetch_samples(const physics::DistanceField& field, const Vector& x)
 {
   if (field.radius > 0)
@@ -200,7 +200,8 @@ void BodyContact<Real>::before_step(const NodeShare& share, const Real* const u[
       continue;
     chunk = { std::numeric_limits<double>::max(), 0 };
     const std::size_t first = c * chunk_size, last = std::min(first + chunk_size, points_.size());
-    // Samples are far apart in memory: all of a chunk are requested before the first of them is needed.
+    // Samples are far apart in memory, so that those of a whole chunk of points are requested before the first is
+    // needed.
     Vector x[chunk_size];
     for (std::size_t p = first; p < last; ++p)
       if (const BodyState& body = now[points_[p].body]; !(due_[p] > body.way))
@@ -316,7 +317,8 @@ typename BodyContact<Real>::Energy BodyContact<Real>::energy_now(const Real* con
     energy.work += sum.work;
     energy.lost += sum.lost;
   }
-  // The sums end at the start of the latest step. Here the rest is added, which the next step would add.
+  // The sums include the steps up to the start of the latest one. What that step adds, which the sums would receive in
+  // the next step, is added here.
   const std::vector<RigidTransform> present = bodies(bones);
   std::vector<Reaction> now(fields_.size());
   for (std::size_t p = 0; p < points_.size(); ++p)

@@ -15,10 +15,10 @@
 namespace frontalis
 {
 
-/// Contact of bound surfaces with rigid bodies. In each step, before_step() finds the forces on points, which all
-/// threads share among each other. After a barrier, add_forces() adds the forces on the nodes of the thread's planes,
-/// and sums the reactions of points in voxels of these planes. after_step() records how far the nodes have moved.
-/// Points are sorted by voxel, so that each node's forces are added in the same order for any number of threads.
+/// Contact of bound surfaces with rigid bodies. In each step, before_step() finds the forces on the points, each thread
+/// those on a part of them. After a barrier, add_forces() adds the forces on the nodes of the thread's planes, and sums
+/// the reactions of points in voxels of these planes. after_step() records how far the nodes have moved. Points are
+/// sorted by voxel, so that each node's forces are added in the same order for any number of threads.
 ///
 /// A point at some distance from all bodies is evaluated again only when nodes and body together have moved that far.
 template <class Real>
@@ -41,8 +41,8 @@ public:
   std::vector<RigidTransform> bodies(const std::vector<RigidTransform>& bones) const override;
   std::int64_t lost_points() const override { return std::count(touches_.begin(), touches_.end(), Touching::lost); }
 
-  // The following types and functions serve a backend that keeps the points in a memory of its own and finds their
-  // forces there. follow() then sums these forces.
+  // The following types and functions are for a backend that keeps the points in its own memory and finds their forces
+  // there. follow() then sums these forces.
 
   using Vector = physics::Vec3<double>;
   struct Point

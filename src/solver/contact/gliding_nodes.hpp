@@ -20,9 +20,9 @@ inline physics::Pose pose_of(const RigidTransform& from)
   return pose;
 }
 
-/// The sliding nodes of a model with friction, processed one by one in double precision; those on bones in the frame of
-/// their bone. Their tangent planes are found in each step: if a plane were kept for several steps, its replacement
-/// would make the surface's reaction jump, which friction follows.
+/// The sliding nodes of a model with friction, processed one by one in double precision. Nodes on a bone are processed
+/// in the frame of the bone. Their tangent planes are found in each step: if a plane were kept for several steps, its
+/// replacement would make the surface's reaction jump, which friction follows.
 template <class Real>
 class GlidingNodes
 {
@@ -40,7 +40,7 @@ public:
   {
     Point normal{ 0, 0, 0 };  // normal of the plane normal . p = height; zero: the node has no plane yet
     double height = 0;
-    double pressing = 0;  // reaction per mass with the delay of friction [m/s2]
+    double pressing = 0;  // reaction per mass, delayed as friction is (friction_response()) [m/s2]
     // Values of the latest step:
     Point outward{ 0, 0, 0 };           // the normal in the scene's frame
     Point surface_velocity{ 0, 0, 0 };  // [m/s]

@@ -13,7 +13,7 @@ struct KeptLevel
   double level;  ///< [m]
 
   /// Finds the tangent plane of the level set near p, in the surface's frame. Returns false, and leaves `plane`
-  /// unchanged, where no samples are stored or the gradient is too short; the node then keeps its latest plane.
+  /// unchanged, where no samples are stored or the gradient is too short; the node then keeps its latest tangent plane.
   bool plane_at(const physics::Vec3<double>& p, physics::LevelPlane<double>& plane) const
   {
     physics::FieldValue<double> value;

@@ -9,9 +9,9 @@ namespace frontalis
 void find_nodes_past_rim(const Model& model, const NodalVectors& displacements,
                          const std::vector<RigidTransform>& bones, Monitor& monitor)
 {
-  // How far [m] a node may be beyond the samples of its surface, where it keeps its last tangent plane. A brick of
-  // eight samples, 0.5 mm apart, ends 4 mm past the rim; over that length a plane departs by 0.1 mm from a head, whose
-  // radius is about 80 mm.
+  // Allowed distance [m] of a node from the samples of its surface. Beyond the samples the node keeps its last tangent
+  // plane. A brick of eight samples, 0.5 mm apart, ends 4 mm past the rim; over that length a plane departs by 0.1 mm
+  // from a head, whose radius is about 80 mm.
   constexpr double far = 4e-3;
   for (const SlidingNode& node : model.sliding)
   {

@@ -25,7 +25,7 @@ constexpr double same_way = 0.5;
 // Largest number of triangles that a vertex crosses in a step.
 constexpr int most_hops = 16;
 
-// Number of rings of triangles around that of a pair whose corners have positions in each step.
+// Around the triangle of a pair, the corners of this many rings of triangles also get positions in each step.
 constexpr int rings = 3;
 
 // Factor on the reach that allows for motion between the sorting of triangles and the search.
@@ -173,7 +173,8 @@ void TissueContact<Real>::sort_triangles()
   grid_.build(margin * (reach_ + std::sqrt(largest)), centres);
 }
 
-// Whether a triangle of a facing surface is in front of a vertex within the reach, or just behind it.
+// Whether a vertex and a triangle face each other and the vertex is within the reach in front of the triangle, or just
+// behind it.
 template <class Real>
 bool TissueContact<Real>::meets(std::size_t p, std::int32_t t, const Moved& moved, double& gap) const
 {
@@ -204,7 +205,7 @@ bool TissueContact<Real>::adjoin(std::int32_t t, std::int32_t s) const
   return std::any_of(a.begin(), a.end(), [&](auto v) { return std::find(b.begin(), b.end(), v) != b.end(); });
 }
 
-// The nearest triangles that a vertex may touch, one on each surface near it.
+// Returns the nearest triangles that a vertex may touch, one on each surface near it.
 template <class Real>
 typename TissueContact<Real>::Found TissueContact<Real>::search(std::size_t p)
 {
@@ -217,8 +218,8 @@ typename TissueContact<Real>::Found TissueContact<Real>::search(std::size_t p)
                double gap;
                if (!meets(p, t, moved, gap))
                  return;
-               // If t is nearer, it replaces the found triangle that shares a corner with it, else the farthest one
-               // found.
+               // If t is nearer, it replaces the triangle found so far that shares a corner with t or, if none does,
+               // the farthest triangle found so far.
                std::size_t k = found.away[0] > found.away[1] ? 0 : 1;
                for (std::size_t same = 0; same < most_pairs; ++same)
                  if (found.triangle[same] >= 0 && adjoin(t, found.triangle[same]))

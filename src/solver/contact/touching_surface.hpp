@@ -21,7 +21,7 @@ public:
   {
     std::int32_t voxel;
     std::int32_t contact;              // index into Model::self_contacts
-    std::int32_t source_in_contact;    // index of the vertex in that contact's surface
+    std::int32_t source_in_contact;    // index of the vertex of that contact's surface from which this one was made
     std::int32_t source;               // the same index, counted over all contacts
     std::array<float, 3> coordinates;  // in the voxel
     float area_share;                  // fraction of the area of its source
@@ -54,7 +54,7 @@ private:
   void sort_vertices();
 
   const Model& model_;
-  std::vector<std::int32_t> joined_begin_, joined_;  // sources near each source along the surface, in ascending order
+  std::vector<std::int32_t> joined_begin_, joined_;  // sources near each source along the surface, ascending
 };
 
 }  // namespace frontalis

@@ -64,7 +64,7 @@ struct AttachArguments
   Real* v[3];
   Real dt;
   Real error_left;  ///< physics::error_left [m]
-  /// Finds a new plane for a lane at displacement u.
+  /// Linearises the level of a lane's node anew, at displacement u.
   void (*renew)(void* context, LevelPlanes<Real>& planes, int lane, std::int32_t node, const Real u[3]);
   void* context;
 };

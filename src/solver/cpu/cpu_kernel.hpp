@@ -72,8 +72,8 @@ using CpuKernel = Real (*)(const CpuKernelArguments<Real>& arguments, std::int32
 
 struct PlaneMonitor;
 
-/// Computes energies and the worst voxel of voxel planes [first, last) at g.u, one entry per plane, and the stiffness
-/// bound of each voxel [N/m].
+/// Computes the energies, and the voxel with the smallest J, of voxel planes [first, last) at g.u, one entry per plane,
+/// and the stiffness bound of each voxel [N/m].
 using CpuMonitorKernel = void (*)(const CpuKernelArguments<double>& g, std::int32_t first, std::int32_t last,
                                   PlaneMonitor* planes, double* stiffness);
 

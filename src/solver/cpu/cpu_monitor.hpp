@@ -7,7 +7,8 @@
 namespace frontalis
 {
 
-/// Energies and the worst voxel of each plane, in double precision because nearly equal numbers are subtracted.
+/// Finds the energies, and the voxel with the smallest J, of each plane of voxels, in double precision because nearly
+/// equal numbers are subtracted.
 template <class Architecture>
 struct CpuMonitor
 {

@@ -79,9 +79,10 @@ struct PairArguments
   MovedVertices<Real> vertices;
   double way;  ///< upper bound of the distance by which a vertex and a triangle have approached each other [m]
   Real response;
-  Real deepest;   ///< largest depth to which points are held [m]
-  Real patience;  ///< motion after which a pair that is behind its triangle without touching it is checked again [m]
-  bool rubs;      ///< whether there is friction
+  Real deepest;  ///< largest depth behind a triangle at which a vertex still feels a force [m]
+  /// motion after which a pair whose vertex is behind its triangle without touching it is checked again [m]
+  Real patience;
+  bool rubs;  ///< whether there is friction
   /// Called for a pair whose foot lies beyond an edge of its triangle: moves the pair to the triangle on the other
   /// side.
   void (*go_on)(void* context, std::int32_t block, int lane);

@@ -48,7 +48,8 @@ public:
     const Real* const free[3] = { free_[0].data(), free_[1].data(), free_[2].data() };
     planes_[k].friction += restricted.friction_loss(plane_nodes_[k], plane_nodes_[k + 1], mass_, old, free, v);
   }
-  /// Adds the work of a force on a node of a plane in the step. Call load() after after(), with the same `kick`.
+  /// Adds the work that a force [N] does on a node of a plane in the step. Call load() after after(), with the same
+  /// `kick`.
   void load(std::int32_t plane, std::int32_t node, const std::array<double, 3>& force, const Real* const v[3],
             double kick);
   Work work() const;

@@ -26,7 +26,8 @@ EnergyBound::EnergyBound(const Model& model) : model_(model), fibres_(model.musc
   const Discretisation discretisation(model);
   viscous_ = discretisation.viscous_terms > 0;
 
-  // For each node, the index of the bone that drives it, or the number of bones plus the index of the load that does.
+  // For each node, the index of the bone that drives it, or the number of bones plus the index of the load that drives
+  // it.
   const auto bones = static_cast<std::int32_t>(model.bones.size());
   std::vector<std::int32_t> driver = moving_bones(model);
   for (const auto& node : model.prescribed)

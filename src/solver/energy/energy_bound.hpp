@@ -27,7 +27,7 @@ public:
   double floor() const { return floor_; }       ///< energy of a strain of 1e-4 everywhere [J]
 
 private:
-  // Eight times the stiffness bound, summed over the voxels at a bone or at prescribed nodes [N/m].
+  // The voxels at a bone or at prescribed nodes. `stiffness`: eight times the sum of their stiffness bounds [N/m].
   struct Driven
   {
     std::int32_t index;  // index of the bone or load

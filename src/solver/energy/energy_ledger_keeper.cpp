@@ -42,7 +42,7 @@ EnergyLedger empty_ledger()
   };
   for (const EnergyTerm& term : energy_terms_of_effects())
     ledger.terms.push_back(term);
-  // of bones, prescribed paths and sliding surfaces, without friction
+  // work of bones, prescribed paths and sliding surfaces, without friction
   ledger.terms.push_back({ "constraint", Kind::work });
   return ledger;
 }
@@ -100,7 +100,7 @@ EnergyLedger EnergyLedgerKeeper::balance(double time, double dt)
   return l;
 }
 
-// Surface loads, and the correction of gravity on nodes with scaled mass.
+// Returns the forces [N] of surface loads and of the correction of gravity on nodes with scaled mass.
 NodalVectors EnergyLedgerKeeper::external_forces(double time, const NodalVectors& u)
 {
   NodalVectors forces(u.size());

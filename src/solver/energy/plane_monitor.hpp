@@ -6,7 +6,7 @@
 namespace frontalis
 {
 
-/// Energies and the worst voxel of a plane or of any other part of a model.
+/// Energies of a plane of voxels or of any other part of a model, and its worst voxel: the one with the smallest J.
 struct PlaneMonitor
 {
   double kinetic = 0, internal = 0, hourglass = 0;  ///< [J]
@@ -19,8 +19,8 @@ struct PlaneMonitor
     return { 0, readings.internal, readings.hourglass, readings.jacobian, readings.jacobian <= 0 ? 1 : 0, voxel };
   }
 
-  /// Adds another part. Parts must be added in the order of their voxels. Values that are not finite count as the
-  /// worst.
+  /// Includes another part of the model. Parts must be added in the order of their voxels. A J that is not finite
+  /// counts as the smallest.
   FRONTALIS_LAW void add(const PlaneMonitor& part)
   {
     kinetic += part.kinetic;

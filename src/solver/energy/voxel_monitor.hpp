@@ -9,7 +9,7 @@
 namespace frontalis
 {
 
-/// Energies and the worst voxel at given nodal displacements [m] and velocities [m/s].
+/// Energies, and the voxel with the smallest J, at given nodal displacements [m] and velocities [m/s].
 Monitor monitor_voxels(const Model& model, const Discretisation& discretisation,
                        const std::vector<std::array<double, 3>>& u, const std::vector<std::array<double, 3>>& v);
 

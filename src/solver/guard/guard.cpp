@@ -25,7 +25,7 @@ constexpr double step_share_allowed = 1.1;
 // random scenes the change is below 0.1 of that term (test/study/property_test.cpp).
 constexpr double imbalance_allowed = 0.2;
 // A voxel is reported as the origin of the instability if its J is below `crushed`, or if it is the stiffest one and
-// the critical step has fallen below the fraction `stiffened` of that of the last good state.
+// the critical step has fallen below the fraction `stiffened` of the critical step of the last good state.
 constexpr double crushed = 0.2;
 constexpr double stiffened = 0.5;
 
@@ -178,8 +178,8 @@ std::int32_t Guard::Implementation::voxel_at(std::int32_t node) const
   return static_cast<std::int32_t>(std::find_if(all.begin(), all.end(), has) - all.begin());
 }
 
-// Finds where the motion goes wrong. NaN and infinity spread over many voxels within a few steps, so the motion is
-// repeated step by step from the good state until the first voxel has them.
+// Finds where the motion goes wrong. NaN and infinity spread over many voxels within a few steps. The motion is
+// therefore repeated step by step from the good state until the first voxel has them.
 InstabilityReport Guard::Implementation::examined(Instability finding, const Controls& target, double end)
 {
   std::vector<bool> moved;

@@ -7,7 +7,7 @@ namespace frontalis
 namespace
 {
 
-// moves bound points by a multiple of their displacements
+// Moves bound points by a multiple of their displacements.
 void shift(const Model& model, const Binding& binding, const std::vector<std::array<double, 3>>& displacements,
            double factor, std::vector<std::array<double, 3>>& points)
 {

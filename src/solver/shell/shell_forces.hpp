@@ -10,10 +10,10 @@
 namespace frontalis
 {
 
-/// Forces of layers that are shells on the nodes of the voxels that carry their vertices. In prepare_step() threads
-/// find the displacements of the vertices, in before_step() each finds the forces of its part of the triangles. In
-/// add_forces() each thread adds up the forces on the vertices in its voxels, and passes them on to the nodes of its
-/// planes through the transposed binding, both in a fixed order.
+/// Computes the forces of layers that are shells. They act on the nodes of the voxels that carry the shells' vertices.
+/// In prepare_step() threads find the displacements of the vertices, in before_step() each finds the forces of its part
+/// of the triangles. In add_forces() each thread adds up the forces on the vertices in its voxels, and passes them on
+/// to the nodes of its planes through the transposed binding, both in a fixed order.
 template <class Real>
 class ShellForces : public NodePart<Real>
 {

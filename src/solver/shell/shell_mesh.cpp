@@ -55,11 +55,12 @@ Matrix inverse(const Matrix& a)
   return b;
 }
 
-// Part of a voxel's edge by which a vertex may lie beside the place where the voxel carries it: single precision of the
-// coordinates in the voxel.
+// Distances below this fraction of a voxel's edge are rounding errors, because coordinates in a voxel have single
+// precision.
 constexpr double rounding = 1e-5;
 
-// Where voxels carry the vertices of a shell at rest. Those that its shape has within rounding errors are its own.
+// Returns the positions of a shell's vertices that follow from the voxels at rest. Where such a position differs from
+// the one in Shell::surface by rounding errors only, the one in Shell::surface is returned.
 std::vector<Vector> carried_vertices(const Model& model, const Shell& shell)
 {
   std::vector<Vector> places;
@@ -213,7 +214,7 @@ void ShellMesh::add(const Model& model, const Shell& shell)
       vertex[i + 3] = first + outer;
     }
     triangles.push_back(shell_triangle(x, beyond, shell.thickness, young, poisson));
-    // bending is measured from the creased shape, stretching from where the voxels carry the shell
+    // bending is measured from the creased shape, and stretching from the positions that the voxels give the vertices
     const Triangle free_of_moment = shell_triangle(creased, beyond, shell.thickness, young, poisson);
     std::copy_n(free_of_moment.rest.height, 3, triangles.back().rest.height);
     triangles.back().vertex = vertex;

@@ -17,12 +17,12 @@ public:
   /// `edge`: length of a cell's edges [m].
   CellMeans(const std::vector<std::array<double, 3>>& points, double edge);
 
-  /// Indices of the vertices in the order of their cells, in which neighbours are close to each other. Vertices are
-  /// numbered in this order below.
+  /// Indices of the vertices sorted by cell, so that neighbours are close to each other in memory. All functions below
+  /// number the vertices in this order.
   const std::vector<std::int32_t>& order() const { return order_; }
-  /// Sets the area of each vertex. Call it before the following functions.
+  /// Sets the area of each vertex [m2]. Call it before the following functions.
   void set_areas(const Field& area);
-  /// Area that belongs to each corner.
+  /// Area that belongs to each corner of the cells [m2].
   const Field& areas() const { return area_; }
 
   void add(Field& sums, std::size_t vertex, float value) const

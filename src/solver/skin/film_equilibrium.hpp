@@ -58,8 +58,8 @@ private:
 
   const Model& model_;
   double critical_, k_;
-  // The cells of means are at least as long as a wavelength, so that the mean of a squared wave has no ripple, and as a
-  // voxel, so that strains that jump between voxels are smoothed.
+  // The cells of means are at least one wavelength long, so that the mean of a squared wave has no ripple, and at least
+  // one voxel edge long, so that strains that jump between voxels are smoothed.
   CellMeans cells_;
   const std::vector<std::int32_t>& order_;       // index in the skin of each vertex in the order of this class
   std::vector<std::int32_t> begin_, neighbour_;  // neighbours of vertex v: from begin_[v] to begin_[v + 1]

@@ -20,12 +20,13 @@ public:
 
   /// What the effect adds to the bound of a voxel's stiffness [N/m].
   virtual double in_voxel(std::size_t voxel) const = 0;
-  /// Adds the internal forces [N] that this stiffness, at its largest, has at the displacements [m].
+  /// Adds to `forces` the internal forces [N] that this stiffness, at its largest value, causes at the displacements
+  /// [m].
   virtual void add_forces(const Model& model, const std::vector<std::array<double, 3>>& displacements,
                           std::vector<std::array<double, 3>>& forces) const = 0;
 
-  /// Increases the stiffness where nodes elsewhere set the bound of the highest frequency, so that the bound does not
-  /// rise. Call stiffen() once masses and this bound are known.
+  /// Increases the stiffness where this does not raise the bound of the highest frequency, because nodes elsewhere
+  /// determine the bound. Call it once the masses and the bound are known.
   virtual void stiffen(const Model& /*model*/, const Discretisation& /*discretisation*/) {}
   /// Longest stable step of masses that are not nodes [s].
   virtual double longest_step() const { return std::numeric_limits<double>::infinity(); }

@@ -8,9 +8,9 @@
 namespace frontalis
 {
 
-/// The arrays of a solver that are not empty, each with the effect that it serves and whether it belongs to the state
-/// of the motion; other arrays are constant or computed in each step. Solver::allocations() and snapshots both use this
-/// list. Arrays that every model has, whatever its effects, are attributed to elasticity.
+/// The arrays of a solver that are not empty, each with the effect that needs it and whether it belongs to the state of
+/// the motion (other arrays are constant or computed anew in each step). Solver::allocations() and snapshots both use
+/// this list. Arrays that every model has, whatever its effects, are attributed to elasticity.
 class ArrayList
 {
 public:
@@ -69,7 +69,7 @@ private:
   std::vector<State> state_;
 };
 
-/// The part of a backend that serves an effect.
+/// The part of a backend that computes an effect.
 class EffectPart
 {
 public:

@@ -11,11 +11,11 @@ namespace
 // Margins are needed, because power iteration gives too low an eigenvalue, and the model may stiffen until the next
 // search.
 constexpr double margin = 1.05;  // factor on the squared frequency
-// the same factor in the first search and after recent changes of activation
+// replaces `margin` in the first search and after recent changes of activation
 constexpr double margin_after_change = 1.25;
-// steps for which a search is valid at most; a search costs about 1 % of 2000 steps
+// largest number of steps for which a search is valid; a search takes about 1 % of the time of 2000 steps
 constexpr std::int64_t longest_valid = 2000;
-// steps for which a search is valid after a change of activation; each further search doubles them
+// number of steps without a search after a change of activation; each search then doubles the number
 constexpr std::int64_t shortest_valid = 200;
 constexpr float activation_allowed = 0.1F;  // change of a muscle's activation since the search
 constexpr double growth_allowed = 1.02;     // allowed growth of the squared frequency bound at nodes since the search

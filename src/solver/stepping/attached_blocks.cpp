@@ -179,7 +179,8 @@ void AttachedBlocks<Real>::constrain(const NodeShare& share, Real* const u[3], R
           first_block(share.thread, share.threads), first_block(share.thread + 1, share.threads));
 }
 
-// Finds a new plane for a lane. Where the field ends or its gradient is too short, the old plane is kept.
+// Linearises the level of a lane's node at the present displacement. Where the field ends or its gradient is too short,
+// the lane keeps its previous plane.
 template <class Real>
 void AttachedBlocks<Real>::renew(void* self, Planes& planes, int lane, std::int32_t node, const Real u[3])
 {

@@ -12,7 +12,8 @@ namespace frontalis
 
 physics::Vec3<double> rest_point(const Model& model, std::int32_t node);
 
-/// Level of an attached node at rest minus `ratio` times the level of its master [m]; 0 where the field ends.
+/// Value of the surface's field at an attached node at rest, minus `ratio` times the value at its master [m]; 0 where
+/// the field has no samples.
 double level_offset(const Model& model, const AttachedNode& node);
 
 /// Groups of a master and its attached nodes at surfaces and bones that do not move: the nodes are held, or all of them

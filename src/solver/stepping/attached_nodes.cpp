@@ -47,7 +47,7 @@ struct Balance
     momentum[1] += m * v.y;
     momentum[2] += m * v.z;
   }
-  /// Adds a mass that is free along one direction only, with dot(direction, velocity) = speed.
+  /// Adds a mass that follows the master along one direction only, with dot(direction, velocity) = speed.
   void add(double m, const Point& direction, double speed)
   {
     const double d[3] = { direction.x, direction.y, direction.z };
@@ -210,7 +210,8 @@ void AttachedNodes<Real>::constrain_groups(const NodeShare& share, Real* const u
     follow_on_bones(*group, u, v, bones);
 }
 
-// Finds a new plane if the old one is no longer valid. Where the field ends or has no direction, the old plane is kept.
+// Linearises the level at `place` if `place` is outside the range of the present plane. Where the field ends or its
+// gradient is too short, the present plane is kept.
 template <class Real>
 void AttachedNodes<Real>::renew(Plane& plane, std::int32_t surface, const Point& place) const
 {
@@ -225,9 +226,9 @@ void AttachedNodes<Real>::renew(Plane& plane, std::int32_t surface, const Point&
   plane = { value.gradient, place, value.value, level.slip * level.slip };
 }
 
-// Finds the velocity of the master that minimises the sum over the group of mass times |v - v*|^2, where v* is the
-// velocity of a node before the constraints, and v that after them. A held node contributes its mass along all axes, a
-// sliding node along the gradient of its master's level.
+// Finds the velocity of the master that minimises the sum over the group of mass times |v - v*|^2, where v* and v are
+// the velocities of a node before and after the constraints. A held node contributes its mass along all axes, a sliding
+// node along the gradient of its master's level.
 template <class Real>
 void AttachedNodes<Real>::follow_on_bones(const Group& group, Real* const u[3], Real* const v[3], const Bones& bones)
 {

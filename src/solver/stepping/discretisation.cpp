@@ -94,8 +94,8 @@ bool contains_any(const Model& model, std::size_t voxel, const std::vector<std::
   return false;
 }
 
-// Rigid nodes, and nodes whose displacement is prescribed along every axis. Empty if these are all nodes, so that a
-// model that cannot move has a time step too.
+// Returns the rigid nodes, and the nodes whose displacement is prescribed along every axis. Returns none if these are
+// all nodes, so that a model that cannot move has a time step too.
 std::vector<std::int32_t> held_nodes(const Model& model)
 {
   std::vector<int> directions(model.nodes.size(), 0);
@@ -219,9 +219,9 @@ Discretisation::Discretisation(const Model& model)
 
 // Adds inertia to nodes that would shorten the time step: a node that slides into a voxel with little tissue, such as a
 // sliver of tendon below a bone's surface, may have a higher frequency than all free nodes. The added inertia makes its
-// mass at most a fifth of that of a whole voxel's tissue. Then finds the masses for the bound. A held node follows its
-// master, so that only the sums of stiffness and mass over the group count; within a group these masses are in
-// proportion to stiffness.
+// mass at most a fifth of that of a whole voxel's tissue. Then finds bound_mass. A held node follows its master, so
+// that only the sums of stiffness and mass over their group count; within a group bound_mass is in proportion to
+// stiffness.
 void Discretisation::share_masses()
 {
   std::vector<double> stiffness(node_mass.size(), 0), tissue(node_mass.size(), 0);

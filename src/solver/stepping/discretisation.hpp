@@ -14,15 +14,16 @@ namespace frontalis
 {
 
 /// The part of a voxel that has a law other than neo-Hookean. Each material has a part of its own, but Mooney-Rivlin
-/// materials, and likewise Fung materials, are averaged by their fractions, because their parameters are moduli and
-/// stiffenings.
+/// materials, and likewise Fung materials, are averaged by their fractions, because means of their parameters, which
+/// are moduli and stiffening exponents, are meaningful.
 struct LawPart
 {
   Law law;
   double weight;  ///< fraction of the voxel's tissue
   std::array<double, physics::parameter_slots> parameters;
   double stiffness_at_rest;  ///< tangent shear stiffness [Pa]
-  /// voxel stiffness per tangent stiffness: weight times tissue volume divided by h^2 of the shortest edge [m]
+  /// factor from a tangent stiffness [Pa] to the voxel's stiffness [N/m]: weight times tissue volume divided by the
+  /// square of the shortest edge [m]
   double per_tangent;
   std::int32_t material;  ///< -1: averaged from several materials
 };
@@ -75,7 +76,7 @@ public:
     return nullptr;
   }
 
-  double volume = 0;                         ///< volume of a whole voxel [m3]
+  double volume = 0;                         ///< volume of a voxel, whatever its fill [m3]
   bool assumed_strain = false;               ///< whether hourglass control is by assumed strain
   bool selective_reduced = false;            ///< whether integration replaces hourglass control
   bool laws = false;                         ///< whether a voxel has a law other than neo-Hookean
@@ -86,7 +87,8 @@ public:
   double stretch_half_sum = 0;               ///< half of that sum over the axes [1/m2]
   std::vector<double> node_mass;             ///< lumped [kg]
   /// Masses for the bound of the highest frequency. Over a group of attached nodes they add up to the same mass as
-  /// node_mass; the mass of a node that does not move with its master is infinite. Empty: node_mass.
+  /// node_mass; the mass of a node that does not move with its master is infinite. If the list is empty, node_mass
+  /// applies.
   std::vector<double> bound_mass;
   /// A held node that follows a master: its displacement relative to the bone is `ratio` times the master's.
   struct Follower

@@ -10,7 +10,8 @@ namespace
 {
 
 constexpr double clear_change = 1e-4;  // relative change of displacements that clearly exceeds rounding errors
-// Fraction of the highest speed so far. At lower speeds rounding errors mask the frequency.
+// The frequency is estimated only at speeds above this fraction of the highest speed so far, because at lower speeds
+// rounding errors mask it.
 constexpr double slow_share = 0.05;
 constexpr double getting_going = 4;  // phase [rad] that the slowest motion must pass before its residual is meaningful
 constexpr int enough_windows = 4;    // number of consecutive windows that must be within the tolerance

@@ -30,8 +30,8 @@ double largest_eigenvalue(int most_iterations, double step, const Multiply& mult
   return eigenvalue;
 }
 
-/// A random start mode for largest_eigenvalue(), and its step [m], which single precision resolves and which is small
-/// compared with the curvature of the laws.
+/// random_mode() returns a start mode for largest_eigenvalue(), and mode_amplitude() the step [m]. Single precision
+/// resolves this step, and over its length the laws are nearly linear.
 NodalVectors random_mode(std::size_t nodes);
 double mode_amplitude(const Model& model);
 

@@ -59,7 +59,7 @@ protected:
     return { { c[0].data(), c[1].data(), c[2].data() } };
   }
   void interleave(const Components& in, NodalVectors& out) const;
-  /// Inverse of interleave(); components may have more entries.
+  /// Inverse of interleave(); the components may have more entries than there are nodes.
   static void separate(const NodalVectors& in, Components& out);
 
   /// The parts of effects that are not idle.

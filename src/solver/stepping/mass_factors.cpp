@@ -7,9 +7,9 @@ namespace frontalis
 namespace
 {
 
-// Squared frequency bound [1/s2] of a model that consists of the voxels that are not chosen. Held nodes count only if
-// all nodes of these voxels are held. Factors at the corners of cut voxels raise the bound but hardly the true
-// frequency, so that they count only if the bound sets the time step.
+// Squared frequency bound [1/s2] of a model that consists of the voxels whose mass stays as it is (ScaledVoxel::chosen
+// is false). Held nodes count only if all nodes of these voxels are held. Factors at the corners of cut voxels raise
+// the bound but hardly the true frequency, so that they count only if the bound sets the time step.
 double allowed_by_others(const Model& model, const std::vector<ScaledVoxel>& voxels,
                          const std::vector<std::array<float, 8>>& corner_stiffness,
                          const std::vector<std::int32_t>& held)

@@ -8,20 +8,21 @@
 namespace frontalis
 {
 
-/// Nodes whose mass is scaled selectively, so that gravity on them would otherwise be too large.
+/// Nodes to which selective mass scaling has added mass, so that gravity on them would be too large without a
+/// correction.
 std::vector<std::int32_t> relieved_nodes(const Model& model, const Discretisation& discretisation);
-/// Force that corrects gravity on a node of relieved_nodes() [N].
+/// The force [N] on a node of relieved_nodes() that cancels the weight of the added mass.
 std::array<double, 3> gravity_relief(const Model& model, const Discretisation& discretisation, std::int32_t node);
 
-/// Tractions and follower pressures on bound surfaces as nodal forces, through the transposed binding and summed in a
-/// fixed order. Also corrects gravity for selective mass scaling.
+/// Converts tractions and follower pressures on bound surfaces to nodal forces, by the transposed binding and in a
+/// fixed order of summation. Also cancels the weight of mass that selective mass scaling has added.
 template <class Real>
 class NodalLoads : public NodePart<Real>
 {
 public:
   NodalLoads(const Model& model, const Discretisation& discretisation);
 
-  /// Switches loads and the correction of gravity on or off with their effects.
+  /// Switches the surface loads and the correction of gravity on or off with their effects.
   void run(EffectSet running) override;
   void reset() override {}
   void list_arrays(ArrayList& list) override;

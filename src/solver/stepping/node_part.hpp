@@ -52,7 +52,7 @@ private:
   Real* v_[3] = {};
 };
 
-/// The part of a host backend that serves an effect on nodes. In each step, each thread calls these functions in the
+/// The part of a host backend that computes an effect on nodes. In each step, each thread calls these functions in the
 /// order of their declaration, for its own nodes. By default they do nothing. Real is the backend's number type.
 template <class Real>
 class NodePart : public EffectPart
@@ -64,7 +64,7 @@ public:
   virtual bool prepares() const { return false; }
   /// Whether add_forces() adds forces. If so, threads wait for each other between before_step() and add_forces().
   virtual bool pushes() const { return false; }
-  /// The two functions are called with the displacements at the start of the step.
+  /// The next two functions are called with the displacements at the start of the step.
   virtual void prepare_step(const NodeShare& /*share*/, const Real* const /*u*/[3]) {}
   virtual void before_step(const NodeShare& /*share*/, const Real* const /*u*/[3], const ConstraintStep& /*step*/) {}
   virtual void add_forces(const NodeShare& /*share*/, const ForceSink<Real>& /*sink*/) {}

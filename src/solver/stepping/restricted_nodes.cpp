@@ -166,8 +166,8 @@ void RestrictedNodes<Real>::reset()
           block_sliding_[block][lane] < 0 ? std::numeric_limits<Real>::max() : Real(-1);
 }
 
-// Moves the planes of a bone's nodes with the bone. A plane that was found for one pose holds for the others, because
-// it is stored in the frame of the bone.
+// Moves the tangent planes of nodes that slide on a bone with the bone. A plane that was found at one pose of the bone
+// is valid at the others, because it is stored in the frame of the bone.
 template <class Real>
 void RestrictedNodes<Real>::carry(Carrier& carrier, const Real* const u[3], const ConstraintStep& step)
 {

@@ -28,8 +28,8 @@ public:
   struct Carrier
   {
     std::int32_t block, bone;
-    RigidTransform pose;  ///< at which the planes of the block are those of its carried nodes
-    std::int64_t moves;   ///< not 0: the planes have a velocity
+    RigidTransform pose;  ///< pose of the bone for which the planes of the block were computed last
+    std::int64_t moves;   ///< 1: the bone moved in that step, so that the planes have a velocity; 0: it did not
   };
   /// State of sliding nodes on their surfaces.
   struct Contacts

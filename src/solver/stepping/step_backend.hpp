@@ -33,7 +33,7 @@ struct BackendState
 struct BackendTraits
 {
   std::string description;  ///< backend, number type, instruction set or device, threads
-  /// A plan lasts this long [s], as far as its number of steps stays within the next two values.
+  /// A plan lasts this long [s], unless the next two values limit its number of steps.
   double seconds_per_plan = 0;
   int fewest_steps_per_plan = 32;
   int most_steps_per_plan = 32;
@@ -50,7 +50,8 @@ struct BackendInput
   const SolverSettings& settings;  ///< the only member that need not outlive the backend
 };
 
-/// Makes time steps, with nodes and voxels in memory of its own; TimeStepper turns it into a Solver. Initially at rest.
+/// Makes time steps of a model whose nodes and voxels it keeps in its own memory, initially at rest. TimeStepper makes
+/// a Solver of it.
 class StepBackend
 {
 public:
@@ -69,7 +70,7 @@ public:
   virtual void get(NodalField field, NodalVectors& out) const = 0;
   /// Sets a field of all nodes; an empty list stands for zeros. Setting displacements resets all other state to rest.
   virtual void set(NodalField field, const NodalVectors& in) = 0;
-  /// `to` may hold an earlier state of this backend, whose memory is reused.
+  /// Saves the state in `to`. If `to` holds an earlier state of this backend, its memory is reused.
   virtual void save(std::unique_ptr<BackendState>& to) = 0;
   virtual void restore(const BackendState& from) = 0;
 
@@ -79,7 +80,8 @@ public:
   /// if the backend cannot search for it faster than internal_forces() allows.
   virtual std::optional<double> highest_frequency_squared(int /*most_iterations*/) { return std::nullopt; }
   virtual Monitor monitor() = 0;
-  /// Work since the account was opened; `open`: open the account now. Called only if SolverSettings::ledger is set.
+  /// Work since the energy account was opened; with `open`, the account is opened now. Called only if
+  /// SolverSettings::ledger is set.
   virtual Work work(bool open) = 0;
   /// See NodePart::add_energies.
   virtual void add_energies(bool /*open*/, NodalVectors& /*forces*/, EnergyLedger& /*ledger*/) {}

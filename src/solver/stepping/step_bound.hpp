@@ -11,7 +11,7 @@ struct StepBound
   double frequency_squared = 0;  ///< [1/s2]; NaN if the stiffness of a voxel is NaN
   std::int32_t node = -1;
 
-  /// Adds another part. Parts must be added in the order of their nodes.
+  /// Includes the bound of another part of the model. Parts must be added in the order of their nodes.
   void add(const StepBound& part)
   {
     if (!(part.frequency_squared <= frequency_squared) && frequency_squared == frequency_squared)
@@ -35,8 +35,7 @@ StepBound step_bound(const Discretisation& discretisation, const Model& model, c
 /// Index of the stiffest of the voxels at a node; -1 if `node` is -1.
 std::int32_t stiffest_voxel_at(const Model& model, std::int32_t node, const double* stiffness);
 
-/// 1 / mass of every node for the bound [1/kg], 0 for held nodes; empty if the masses for the bound are those of all
-/// nodes.
+/// Inverse of each node's mass in the bound [1/kg], 0 for held nodes; empty if it is 1 / node_mass at every node.
 std::vector<float> mobility(const Discretisation& discretisation);
 
 }  // namespace frontalis

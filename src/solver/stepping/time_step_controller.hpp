@@ -9,8 +9,8 @@ namespace frontalis
 /// Chooses the length of steps, and the number of steps until the frequency bound is found again, from the bounds that
 /// a backend finds, the activations, and jumps of bones.
 ///
-/// Just below the critical step, tissue that stiffens as it vibrates gains or loses energy in every swing. The
-/// controller therefore is cautious for some steps after signs of fast change: steps are shorter, plans have few steps,
+/// Just below the critical step, tissue that stiffens as it vibrates gains or loses energy in every cycle. The
+/// controller is therefore cautious for some steps after signs of fast change: steps are shorter, plans have few steps,
 /// and the bound is found in every step. While stiffened tissue vibrates, steps are shorter and the length of plans is
 /// limited.
 class TimeStepController

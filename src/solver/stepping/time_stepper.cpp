@@ -183,7 +183,7 @@ void TimeStepper::renew_assembled_estimate(const std::vector<float>& asked)
   controller_.assembled().renew(motion_.activation, asked, controller_.state().frequency_squared, search);
 }
 
-// Makes a plan with these next controls, and advances the muscles' activations to its end.
+// Makes a plan that ends with the controls `next`, and advances the muscles' activations to its end.
 StepPlan TimeStepper::plan_to(const Controls& next, const TimeStepController::Choice& choice)
 {
   StepPlan plan;

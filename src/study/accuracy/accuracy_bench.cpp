@@ -17,7 +17,7 @@ namespace frontalis
 namespace
 {
 
-// wall time of a history with settling, divided by that of the history alone; a rough figure
+// Wall time of a history with settling, divided by that of the history alone. This is a rough estimate.
 constexpr double with_settling = 1.5;
 
 // A file consists of this signature, a hash of its content, and the content as bytes.

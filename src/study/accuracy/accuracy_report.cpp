@@ -1,4 +1,4 @@
-// Presents the findings of a study of accuracy as a table, a plot, a text and profiles.
+// Presents the findings of a study of accuracy as a table, a plot, a text and profiles for scene files.
 
 #include "study/accuracy/accuracy_run.hpp"
 

@@ -44,7 +44,7 @@ struct VariantCheckpoint
 /// The machine on which costs are measured: processor or device, and number of threads.
 std::string machine_of(const Solver& solver, int threads);
 
-/// receives the completed fraction, 0..1; returns false to interrupt the motion
+/// Function that receives the completed fraction of a motion, 0..1, and returns false to interrupt the motion.
 using GoOn = std::function<bool(double done)>;
 
 /// The checkpoint from which to resume a motion, and a function that stores further ones, about one per minute of wall

@@ -25,7 +25,7 @@ constexpr double margin = 1.08;   // size of the picture divided by that of the 
 
 Portrait::Portrait(const Model& model, const SkinState& rest) : appearance_(model, rest)
 {
-  // what the picture holds, to the right and upwards: the skin, and the rest of the head without the neck
+  // corners of the picture, to the right and upwards [m]: it holds the skin, and the rest of the head without the neck
   std::array<double, 2> low{ 1, 1 }, high{ -1, -1 };
   const auto hold = [&](double x, double y, double z)
   {

@@ -38,8 +38,8 @@ VectorXd bounded_minimum(const MatrixXd& h, const VectorXd& g, const VectorXd& l
     if (lower[i] < x[i] && x[i] < upper[i])
       free.push_back(i);
   const double zero = relative_tolerance * std::max(g.cwiseAbs().maxCoeff(), h.diagonal().maxCoeff());
-  // Each round frees one variable or ends the search. The limit serves variables that alternate between their bounds
-  // because of rounding errors.
+  // Each round frees one variable or ends the search. The limit ends the search if rounding errors make a variable
+  // alternate between two states.
   for (Index round = 0; round < 10 * count; ++round)
   {
     while (!free.empty())

@@ -21,22 +21,22 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double margin = 1.2;           // range of a measured influence over that of the given motions
-constexpr double deviation = 1e-4;       // standard deviation of landmarks [m]
-constexpr double gain_deviation = 1;     // of gains from 1, for those that the poses leave open
-constexpr int iterations = 10;           // of the Gauss-Newton method
+constexpr double margin = 1.2;           // measured range of a motion, divided by the range in the poses
+constexpr double deviation = 1e-4;       // standard deviation of measured places of landmarks [m]
+constexpr double gain_deviation = 1;     // standard deviation of gains from 1, a weak preference
+constexpr int iterations = 10;           // number of Gauss-Newton iterations
 constexpr double millimetre = 1e-3;      // [m]
 constexpr double degree = 0.0174532925;  // [rad]
 
 // The recorded poses as vectors, and what the latest simulation has shown of each.
 struct Poses
 {
-  std::vector<VectorXd> position, effort;  // per actuator
-  std::vector<VectorXd> places;  // measured displacements of landmarks, those of the track one after the other
-  std::vector<VectorXd> offset;  // simulated displacement minus that of the law, as of the latest simulation
+  std::vector<VectorXd> position, effort;  // per pose: one number per actuator
+  std::vector<VectorXd> places;            // per pose: measured displacements of the track's landmarks [m]
+  std::vector<VectorXd> offset;            // per pose: simulated displacements minus those of the influence law [m]
 };
 
-// the coordinates of the landmarks of a track in vectors of all landmarks
+// Indices of the coordinates of a track's landmarks in vectors of the coordinates of all landmarks.
 std::vector<Index> coordinates_of(const Model& model, const LandmarkTrack& track)
 {
   std::vector<Index> out;
@@ -70,7 +70,7 @@ Poses poses_of(const ActuatorTrack& track, const LandmarkTrack& landmarks)
   return poses;
 }
 
-// parts of motion that the actuators cause, with limits that cover all poses
+// The components of bones' motions (parts) that the actuators cause, with limits that include all poses.
 std::vector<Unknown> parts_of(const std::vector<Actuator>& actuators, const Poses& poses)
 {
   std::map<std::string, Unknown> parts;
@@ -100,7 +100,7 @@ std::vector<Unknown> parts_of(const std::vector<Actuator>& actuators, const Pose
   return out;
 }
 
-// one row per part of motion, one column per actuator
+// Matrix from the actuators' positions to the parts of motion: one row per part, one column per actuator.
 MatrixXd motion_of(const std::vector<Actuator>& actuators, const std::vector<Unknown>& parts)
 {
   MatrixXd out = MatrixXd::Zero(static_cast<Index>(parts.size()), static_cast<Index>(actuators.size()));
@@ -112,7 +112,7 @@ MatrixXd motion_of(const std::vector<Actuator>& actuators, const std::vector<Unk
   return out;
 }
 
-// work of the tissue on bones per mm or degree of each part of motion
+// Work [J] of the tissue on bones per mm or degree of each part of motion.
 VectorXd conjugate_forces(const Model& model, const std::vector<BodyFrame>& bones, const std::vector<Unknown>& parts)
 {
   VectorXd out(static_cast<Index>(parts.size()));
@@ -273,7 +273,7 @@ Calibration calibrate(const std::shared_ptr<const Model>& model, const std::vect
   {
     const double square_error = (poses.places[pose] - simulate(pose, "poses", pose, count)).squaredNorm();
     (std::count(used.begin(), used.end(), pose) > 0 ? error : held_out_error) += square_error;
-    // an actuator holds its bones against the tissue
+    // An actuator holds its bones in place, so that its effort is opposite to the tissue's forces.
     const VectorXd held = -motion.transpose() * conjugate_forces(*model, runs.bones(), parts);
     for (Index a = 0; a < held.size(); ++a)
       if (const double measured = poses.effort[pose][a]; std::isfinite(measured))

@@ -20,7 +20,7 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 constexpr double determined_share = 0.05;  // largest standard deviation of a determined unknown, divided by its range
-// refinement ends if unknowns change by less than this fraction of their range
+// Refinement ends if all unknowns change by less than this fraction of their range.
 constexpr double smallest_change = 1e-3;
 
 std::size_t index_of_landmark(const Model& model, const std::string& name)

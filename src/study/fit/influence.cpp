@@ -22,7 +22,7 @@ constexpr double tolerance = 1e-3;           // largest remaining motion in equi
 constexpr double sufficient_motion = 5e-6;   // remaining motion of the skin that always counts as equilibrium [m]
 constexpr double shortest_relaxation = 0.1;  // simulated time before sufficient_motion is tested [s]
 constexpr double longest_relaxation = 5;     // simulated time within which a face must find its equilibrium [s]
-// a rest value is interior if it is at least this fraction of the range from both limits
+// A rest value is well between the limits if its distance from both is at least this fraction of their range.
 constexpr double interior_share = 0.1;
 
 std::vector<double> numbers_of(const VectorXd& vector) { return { vector.begin(), vector.end() }; }

@@ -59,7 +59,7 @@ Model dense_block(std::int32_t x, std::int32_t y, std::int32_t z)
   tissue.name = "hypodermis";
   Model model = voxel_model({ { x, y, z } }, 1e-3, tissue);
   hold(model, [](const Point& p) { return p[0] == 0; });
-  // This gravity shears a block of any length by about 5 %, so that it moves but does not collapse.
+  // With this gravity a block of any length is sheared by about 5 %: it moves but does not collapse.
   model.gravity = { { 0, 0, -0.05 * tissue.parameters[0] / (tissue.density * x * model.spacing[0]) } };
   return model;
 }

@@ -82,8 +82,8 @@ public:
   const Monitor& monitor() const { return monitor_; }       ///< latest record
   const EnergyLedger& energies() const { return ledger_; }  ///< latest record
 
-  /// Checks that the imbalance of the ledger stayed within the case's bounds.energy of its largest term, and plots the
-  /// motion to `picture` if that is not empty.
+  /// Checks that the imbalance of the ledger stayed within the fraction bounds.energy of the ledger's largest term, and
+  /// plots the motion to `picture` if that is not empty.
   void check_balance(const std::string& of, const std::string& picture = {}, const std::string& title = {});
   /// Plots energies and the smallest J over time.
   void plot(const std::string& file, const std::string& title);

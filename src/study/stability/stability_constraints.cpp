@@ -106,8 +106,8 @@ void off_the_edge(CaseRun& run)
   for (std::size_t i = 0; i < rims.size(); ++i)
   {
     Model model = damped_block(run);
-    // The spacing of the field is below two thirds of the nodes' distance from the sheet, so that their cells do not
-    // reach its other side.
+    // The spacing of the field is below two thirds of the nodes' distance from the sheet. The samples around a node are
+    // then all on the node's side of the sheet.
     const Profile sheet{ { -40e-3, -0.3e-3 }, { 1e-3 * rims[i], -0.3e-3 } };
     slide_on(
         model, "sheet", [&](const Point& p) { return distance_to(sheet, true, p); }, nodes_where(model, underside),

@@ -14,7 +14,7 @@ namespace frontalis
 namespace
 {
 
-// Adds a body that may touch the lower or upper side of a box of whole voxels, moved by a new bone with this name.
+// Adds a body that may touch the lower or upper side of a box of full voxels, moved by a new bone with this name.
 void touch(Model& model, const std::string& bone, bool upper, const SampledField& body, double friction)
 {
   Contact contact = touching_side(model, upper, body);
@@ -170,7 +170,7 @@ void blinking(CaseRun& run)
     const Vectors shut = motion.displacements();
     depth = std::max(depth, deepest(motion));
     motion.advance({ 0.5 * blink, turned(0) });
-    // The first swing has died away by the 20th blink.
+    // The initial vibration has died away by the 20th blink.
     if (i == 20)
       shut_before = shut;
     if (i > 20)

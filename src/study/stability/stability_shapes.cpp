@@ -168,7 +168,8 @@ void rigid_rotation(CaseRun& run)
 void dangling(CaseRun& run)
 {
   VoxelBox box{ run.size(), { { 1e-3, 1e-3, 1e-3 } }, { soft_tissue() } };
-  // A fixed slab with a sheet, a strip, a voxel at its edge and one at its corner attached to it; and a free voxel.
+  // The model is a fixed slab to which a sheet, a strip and two single voxels are attached, one voxel by an edge and
+  // one by a corner, and a free voxel.
   box.fill = [](const Voxel& v) -> double
   {
     const bool top = v[2] == 6;

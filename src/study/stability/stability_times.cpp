@@ -61,7 +61,7 @@ void long_cycling(CaseRun& run)
     const Vectors up = motion.displacements();
     motion.advance({ period / 2, motion.controls(0) });
     const Vectors down = motion.displacements();
-    // The first swing has died away by the 20th cycle.
+    // The initial vibration has died away by the 20th cycle.
     if (i == 20)
     {
       high = up;

@@ -76,7 +76,7 @@ SceneConstraint constraint_at(const std::string& surface, SceneConstraint::Kind 
   return constraint;
 }
 
-// U and W of curved_layer() at the outer radius b of a layer on a sphere of radius a. The layer is stiff beyond the
+// U and W (see curved_layer()) at the outer radius b of a layer on a sphere of radius a. The layer is stiff beyond the
 // radius c. The body force f [N/m3] acts against z.
 std::pair<double, double> radial_solution(double a, double b, double c, double poisson, bool slides, double f)
 {

@@ -14,7 +14,7 @@ namespace frontalis
 /// Positions and vectors are in the scene's frame, in SI units.
 struct BoundaryBody
 {
-  /// Symmetry of a body of which planes through the scene's origin leave one eighth.
+  /// Symmetry of a body of which only one eighth is modelled, cut out by three planes through the scene's origin.
   enum class Mirror
   {
     none,

@@ -46,7 +46,7 @@ inline double mean(const Vectors& vectors, std::size_t axis)
 
 inline double relative(double found, double expected) { return 100 * std::abs(found / expected - 1); }
 
-/// Mass [kg] of each node of a model of one material in whole voxels.
+/// Mass [kg] of each node of a model of one material in full voxels.
 inline std::vector<double> lumped_masses(const Model& model)
 {
   std::vector<double> mass(model.nodes.size(), 0);

@@ -73,7 +73,7 @@ ElementMatrix element_stiffness(const Model& model, std::size_t e, const std::ar
     for (int row = 0; row < 24; ++row)
       k(row, column) = (after[row / 3][row % 3] - before[row / 3][row % 3]) / (2 * step);
   }
-  // The mean with the transpose removes the asymmetry of rounding errors.
+  // The mean of the matrix and its transpose is free of the asymmetry of rounding errors.
   return 0.5 * (k + k.transpose());
 }
 
@@ -160,7 +160,7 @@ Sparse shell_stiffness(const Model& model, const std::array<double, 9>& gradient
 
 RestState find_equilibrium(Model model, const EquilibriumSettings& settings)
 {
-  constexpr double longest = 60;  // in periods
+  constexpr double longest = 60;  // largest number of periods before a search for equilibrium has failed
   model.damping = 4 * std::acos(-1.0) / settings.period;
   for (auto& load : model.loads)
     load.ramp = settings.ramp * settings.period;
@@ -203,7 +203,7 @@ Point internal_force(Solver& solver, const std::vector<std::int32_t>& nodes)
 
 struct LinearStatics::System
 {
-  // row of the equations of each component of each node; -1: the component is fixed
+  // for each component of each node, the index of its unknown; -1: the component is fixed
   std::vector<std::array<int, 3>> unknown;
   Vectors fixed;           // prescribed displacements [m]
   Eigen::VectorXd forces;  // forces that prescribed displacements cause [N]

@@ -1,4 +1,4 @@
-// Compares bending with each hourglass control with a converged solution, and periods of vibration with theory.
+// Compares the bending of voxels under each hourglass control with a converged solution, and vibrations with theory.
 
 #include "study/verification/verification_cases.hpp"
 

@@ -233,7 +233,7 @@ struct Comparison
   double period;              // period of the slowest vibration [s]
   std::array<std::string, 2> what, unit;
   std::function<std::array<double, 2>(const SolidState&)> figures;
-  // The second figure is a small difference of large stresses and therefore has no bound.
+  // True: the second of the two figures is a small difference of large stresses and therefore has no bound.
   bool second_is_small = false;
 };
 

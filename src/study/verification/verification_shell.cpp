@@ -82,8 +82,8 @@ double shell_energy(const Model& model, const Vectors& u)
   return solver->ledger()["shell"];
 }
 
-// Energy of a plate that is bent to an oblong bump, divided by that of plate theory. `angle`: of the bump to the
-// voxels.
+// Energy of a plate that is bent to an oblong bump, divided by that of plate theory. `angle`: rotation of the bump
+// relative to the voxels [rad].
 double bump_energy(const Model& model, const Slab& slab, double angle)
 {
   const double side = slab.size[0] * slab.edge, amplitude = 1e-3 * slab.edge, radius[2] = { 0.24 * side, 0.45 * side };

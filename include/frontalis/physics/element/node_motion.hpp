@@ -31,7 +31,7 @@ Kick<T> kick_of(double damping, double seconds, const Gravity& gravity)
   return kick;
 }
 
-/// Velocity of a free node after a step. gain_over_mass: Kick::gain over the node's mass [s/kg].
+/// Velocity of a free node after a step. gain_over_mass: Kick::gain divided by the node's mass [s/kg].
 template <class T>
 FRONTALIS_LAW T kicked(const Kick<T>& kick, int axis, T v, T gain_over_mass, T force)
 {
@@ -56,18 +56,19 @@ FRONTALIS_LAW void move_to(double to, T before, T dt, T& u, T& v)
   v = (u - before) / dt;
 }
 
-/// Work on a node per mass in a step, along one axis [m2/s2].
+/// Work on a node in one step, along one axis and divided by the node's mass [m2/s2].
 struct NodeWork
 {
   double damping;     ///< lost to damping
   double constraint;  ///< work of constraints
 };
 
-/// Works on a node from its velocities [m/s]: `before` the step, `after` it, and after it if there were no constraints
-/// (`free`). Each impulse acts along the mean of the velocities before and after the step, so that the works add up to
-/// the change of kinetic energy exactly. `beside`, `beside_before`: displacement [m] that constraints made in addition
-/// to dt v, in this step and in the previous one. The mean of the other forces over both steps did work along this
-/// displacement too, which the constraints absorbed. `damping` [1/s], `kick` [s]: the first two arguments of kick_of().
+/// Finds the work on a node from its velocities [m/s]: `before` the step, `after` it, and after it if there were no
+/// constraints (`free`). Each impulse acts along the mean of the velocities before and after the step, so that the
+/// works add up to the change of kinetic energy exactly. `beside`, `beside_before`: displacement [m] that constraints
+/// made in addition to dt v, in this step and in the previous one. The mean of the other forces over both steps did
+/// work along this displacement too, which the constraints absorbed. `damping` [1/s], `kick` [s]: the first two
+/// arguments of kick_of().
 FRONTALIS_LAW NodeWork node_work(double before, double free, double after, double beside, double beside_before,
                                  double damping, double kick)
 {

@@ -22,8 +22,8 @@ FRONTALIS_LAW T turn_with_plane(const Vec3<T>& from, const Vec3<T>& to, Vec3<T>&
 }
 
 /// Applies friction to a node with velocity v relative to the surface. response: friction_response(); reaction: normal
-/// speed that the surface removed, over dt [m/s2]; pressing: the low-pass filtered reaction, from which friction
-/// follows; updated here.
+/// speed that the surface removed, divided by dt [m/s2]; pressing: the low-pass filtered reaction, which determines
+/// friction and is updated here.
 template <class T>
 FRONTALIS_LAW void rub(const T& coefficient, const T& response, const T& dt, const T& reaction, T& pressing, Vec3<T>& u,
                        Vec3<T>& v)
@@ -57,8 +57,8 @@ FRONTALIS_LAW Vec3<double> surface_velocity(const Pose& now, const Pose& before,
   return rate * (now.outwards(p) - before.outwards(p));
 }
 
-/// now, before: pose of the bone at the end and start of the step; rate: 1 / dt; place, v: position and velocity of the
-/// node after its update.
+/// Finds the motion of a node relative to a bone. now, before: pose of the bone at the end and start of the step; rate:
+/// 1 / dt; place, v: position and velocity of the node after its update.
 FRONTALIS_LAW RelativeMotion relative_to(const Pose& now, const Pose& before, double rate, const Vec3<double>& place,
                                          const Vec3<double>& v)
 {
