@@ -1,6 +1,7 @@
 #include "cli/run_output.hpp"
 
 #include "cli/reactions.hpp"
+#include "frontalis/model/body_shape.hpp"
 #include "frontalis/model/effects.hpp"
 #include "frontalis/study/table.hpp"
 
