@@ -1,7 +1,7 @@
 #include "bake/shapes/head/head.hpp"
 #include "bake/messages.hpp"
 #include "frontalis/physics/materials/lookup.hpp"
-#include "frontalis/model/content_hash.hpp"
+#include "frontalis/content_hash.hpp"
 #include "bake/voxels/model_stages.hpp"
 
 namespace frontalis

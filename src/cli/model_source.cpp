@@ -8,7 +8,7 @@
 #ifdef FRONTALIS_WITH_BAKE
 #include "frontalis/bake/bake.hpp"
 #include "frontalis/bake/write_surfaces.hpp"
-#include "frontalis/model/content_hash.hpp"
+#include "frontalis/content_hash.hpp"
 #endif
 
 #include <CLI/CLI.hpp>

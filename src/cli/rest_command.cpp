@@ -4,7 +4,7 @@
 #include "cli/progress.hpp"
 
 #include "frontalis/error.hpp"
-#include "frontalis/model/content_hash.hpp"
+#include "frontalis/content_hash.hpp"
 #include "frontalis/model/model_file.hpp"
 #include "frontalis/runner/named_controls.hpp"
 #include "frontalis/solver/rest_shape.hpp"

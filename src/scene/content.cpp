@@ -1,6 +1,6 @@
 #include "scene/quantity.hpp"
 
-#include "frontalis/model/content_hash.hpp"
+#include "frontalis/content_hash.hpp"
 #include "frontalis/scene/head_template.hpp"
 #include "frontalis/scene/read_scene.hpp"
 

@@ -1,7 +1,7 @@
 // The data that determine a scene's content hash.
 
 #include "frontalis/error.hpp"
-#include "frontalis/model/content_hash.hpp"
+#include "frontalis/content_hash.hpp"
 #include "frontalis/scene/read_scene.hpp"
 #include "files.hpp"
 

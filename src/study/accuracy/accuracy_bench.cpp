@@ -1,7 +1,7 @@
 #include "study/accuracy/accuracy_bench.hpp"
 
 #include "frontalis/error.hpp"
-#include "frontalis/model/content_hash.hpp"
+#include "frontalis/content_hash.hpp"
 #include "frontalis/study/step_time.hpp"
 #include "frontalis/study/table.hpp"
 

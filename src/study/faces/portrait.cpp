@@ -81,8 +81,8 @@ void write_contact_sheet(const std::vector<std::pair<std::string, std::vector<st
   std::ofstream(raw, std::ios::binary) << pixels;
   run_gnuplot(fmt::format("set terminal pngcairo noenhanced size {0},{1} font 'sans,12' background '#ffffff'\n"
                           "set output '{2}.png'\nset margins 0,0,0,0\nunset border\nunset tics\nunset key\n"
-                          "set xrange [0:{0}]\nset yrange [0:{1}]\n{3}"
-                          "plot '{4}' binary array=({0},{1}) flipy format='%uchar' using 1:2:3 with rgbimage pixels\n",
+                          "set xrange [-0.5:{0}-0.5]\nset yrange [-0.5:{1}-0.5]\n{3}"
+                          "plot '{4}' binary array=({0},{1}) flipy format='%uchar' using 1:2:3 with rgbimage\n",
                           wide, high, path, labels, raw),
               path);
   std::filesystem::remove(raw);
