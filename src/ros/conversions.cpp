@@ -50,18 +50,35 @@ std_msgs::ColorRGBA opaque(const std::array<float, 3>& colour)
   return out;
 }
 
-/// Colours of a mesh at rest in the face frame, lit as the skin is, so that the two join without a seam.
-SkinColours shaded(const RenderMesh& mesh)
+/// Triangles in a frame that moves; displays use its latest transform. They are added by add_triangles().
+visualization_msgs::Marker marker_in(const std::string& frame, const std::string& name)
 {
-  SkinState state;
-  state.normals = normals_of(mesh);
-  state.vertices = mesh.vertices;
-  TriangleMesh surface;
-  surface.triangles = mesh.triangles;
-  surface.vertices.resize(mesh.vertices.size());
-  SkinColours out;
-  SkinShading(surface, mesh.colours).colours(state, {}, out);
-  return out;
+  visualization_msgs::Marker marker;
+  marker.header.frame_id = frame;
+  marker.frame_locked = true;
+  marker.ns = name;
+  marker.type = visualization_msgs::Marker::TRIANGLE_LIST;
+  marker.action = visualization_msgs::Marker::ADD;
+  marker.pose.orientation.w = 1;
+  marker.scale.x = marker.scale.y = marker.scale.z = 1;
+  return marker;
+}
+
+/// Adds the triangles of a mesh in the face frame to a marker whose frame has its origin at `centre` of the face frame.
+/// `colours`: per vertex, or empty.
+void add_triangles(const RenderMesh& mesh, const std::array<double, 3>& centre, const SkinColours& colours,
+                   visualization_msgs::Marker& marker)
+{
+  for (const auto& triangle : mesh.triangles)
+    for (const auto corner : triangle)
+    {
+      const auto vertex = static_cast<std::size_t>(corner);
+      const auto& v = mesh.vertices[vertex];
+      set(marker.points.emplace_back(),
+          std::array<double, 3>{ { v[0] - centre[0], v[1] - centre[1], v[2] - centre[2] } });
+      if (!colours.empty())
+        marker.colors.push_back(opaque(colours[vertex]));
+    }
 }
 
 }  // namespace
@@ -250,62 +267,29 @@ visualization_msgs::MarkerArray to_bodies(const Model& model, const std::string&
     const RenderMesh mesh = body_at_rest(model, shape);
     if (mesh.triangles.empty())
       continue;
-    visualization_msgs::Marker& marker = out.markers.emplace_back();
-    marker.header.frame_id = body_frame(face_frame, shape);
-    marker.frame_locked = true;
-    marker.ns = shape.name;
-    marker.type = visualization_msgs::Marker::TRIANGLE_LIST;
-    marker.action = visualization_msgs::Marker::ADD;
-    marker.pose.orientation.w = 1;
-    marker.scale.x = marker.scale.y = marker.scale.z = 1;
+    visualization_msgs::Marker& marker = out.markers.emplace_back(marker_in(body_frame(face_frame, shape), shape.name));
     marker.color = opaque(mesh.colours.front());
     const bool is_painted = std::any_of(mesh.colours.begin(), mesh.colours.end(),
                                         [&](const auto& colour) { return colour != mesh.colours.front(); });
-    const SkinColours colours = is_painted || shape.only_shown ? shaded(mesh) : SkinColours();
-    const auto centre = model.to_face(shape.centre);
-    for (const auto& triangle : mesh.triangles)
-      for (const auto vertex : triangle)
-      {
-        const auto& v = mesh.vertices[static_cast<std::size_t>(vertex)];
-        set(marker.points.emplace_back(),
-            std::array<double, 3>{ { v[0] - centre[0], v[1] - centre[1], v[2] - centre[2] } });
-        if (!colours.empty())
-          marker.colors.push_back(opaque(colours[static_cast<std::size_t>(vertex)]));
-      }
+    add_triangles(mesh, model.to_face(shape.centre), is_painted || shape.only_shown ? lit(mesh) : SkinColours(),
+                  marker);
   }
   return out;
 }
 
-visualization_msgs::MarkerArray to_eyeballs(const Model& model, const std::vector<BodyFrame>& bones)
+visualization_msgs::MarkerArray to_eyeballs(const Model& model, const std::string& face_frame)
 {
   visualization_msgs::MarkerArray out;
-  // a frame without bones has no eyes
-  if (bones.size() != model.bones.size())
-    return out;
-  for (const Eyeball& eye : eyeballs(model, [&](std::size_t bone) { return bones[bone].pose; }))
+  const std::vector<BodyShape> bones = bone_shapes(model);
+  for (const Eyeball& eye : eyeballs(model, [](std::size_t) { return RigidTransform(); }))
   {
-    visualization_msgs::Marker marker;
-    marker.ns = model.bones[eye.bone];
-    marker.action = visualization_msgs::Marker::ADD;
-    marker.pose.orientation.w = 1;
-    marker.scale.x = marker.scale.y = marker.scale.z = 1;
+    visualization_msgs::Marker marker = marker_in(body_frame(face_frame, bones[eye.bone]), model.bones[eye.bone]);
     marker.color = opaque(eye.ball.colour);
-    marker.type = visualization_msgs::Marker::TRIANGLE_LIST;
-    marker.id = 1;
-    for (const auto& triangle : eye.iris.triangles)
-      for (const auto vertex : triangle)
-      {
-        set(marker.points.emplace_back(), eye.iris.vertices[vertex]);
-        marker.colors.push_back(opaque(eye.iris.colours[vertex]));
-      }
-    visualization_msgs::Marker ball = marker;
+    visualization_msgs::Marker& ball = out.markers.emplace_back(marker);
     ball.type = visualization_msgs::Marker::SPHERE;
-    ball.id = 0;
-    ball.points.clear();
-    ball.colors.clear();
-    set(ball.pose.position, eye.ball.centre);
     ball.scale.x = ball.scale.y = ball.scale.z = 2 * eye.ball.radius;
-    out.markers.push_back(ball);
+    marker.id = 1;
+    add_triangles(eye.iris, eye.ball.centre, eye.iris.colours, marker);
     out.markers.push_back(marker);
   }
   return out;

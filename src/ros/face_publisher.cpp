@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <utility>
 
 namespace frontalis
 {
@@ -49,7 +50,7 @@ FacePublisher::FacePublisher(ros::NodeHandle private_handle)
       topology_(private_handle.advertise<shape_msgs::Mesh>("skin_topology", 1, true)),
       bodies_(private_handle.advertise<visualization_msgs::MarkerArray>("bodies", 1, true)),
       muscles_(private_handle.advertise<visualization_msgs::MarkerArray>("muscles", 1)),
-      eyes_(private_handle.advertise<visualization_msgs::MarkerArray>("eyes", 1)),
+      eyes_(private_handle.advertise<visualization_msgs::MarkerArray>("eyes", 1, true)),
       caption_(private_handle.advertise<visualization_msgs::Marker>("caption", 1, true)),
       handle_(private_handle)
 {
@@ -95,23 +96,30 @@ void FacePublisher::start(std::shared_ptr<const Model> model, const std::string&
 
 void FacePublisher::publish_bodies()
 {
-  visualization_msgs::MarkerArray bodies = to_bodies(*model_, face_frame_);
-  const auto shown = bodies.markers.size();
-  // Bodies of the scene that was shown before are removed by name: rviz may handle the markers of a message in any
+  publish_latched(to_bodies(*model_, face_frame_), bodies_, shown_bodies_);
+  publish_latched(to_eyeballs(*model_, face_frame_), eyes_, shown_eyes_);
+}
+
+void FacePublisher::publish_latched(visualization_msgs::MarkerArray markers, const ros::Publisher& publisher,
+                                    MarkerNames& shown)
+{
+  const MarkerNames former = std::exchange(shown, {});
+  for (const auto& marker : markers.markers)
+    shown.insert({ marker.ns, marker.id });
+  // Markers of the scene that was shown before are removed by name: rviz may handle the markers of a message in any
   // order while their frames are new, so that a removal of all markers could remove the new ones.
-  for (const BodyShape& former : shapes_)
+  for (const auto& [name, id] : former)
   {
-    if (former.surface == nullptr ||
-        std::any_of(bodies.markers.begin(), bodies.markers.begin() + static_cast<std::ptrdiff_t>(shown),
-                    [&](const auto& marker) { return marker.ns == former.name; }))
+    if (shown.count({ name, id }) > 0)
       continue;
-    visualization_msgs::Marker& removal = bodies.markers.emplace_back();
+    visualization_msgs::Marker& removal = markers.markers.emplace_back();
     removal.header.frame_id = face_frame_;
-    removal.ns = former.name;
+    removal.ns = name;
+    removal.id = id;
     removal.pose.orientation.w = 1;
     removal.action = visualization_msgs::Marker::DELETE;
   }
-  bodies_.publish(bodies);
+  publisher.publish(markers);
 }
 
 void FacePublisher::set_colour(SkinColour colour, SkinField field, double range)
@@ -179,25 +187,16 @@ bool FacePublisher::publish(const Frame& frame, const ros::Time& stamp, bool pau
                             for (const std::size_t landmark : standard_landmarks_)
                               message.poses.push_back(poses.poses[landmark]);
                           });
-  const auto publish_markers = [&](const ros::Publisher& publisher, visualization_msgs::MarkerArray& shown)
-  {
-    for (auto& marker : shown.markers)
-    {
-      marker.header.frame_id = face_frame_;
-      marker.header.stamp = stamp;
-    }
-    publisher.publish(shown);
-  };
   if (shows_muscles() && frame.displacements.size() == model_->nodes.size())
   {
     visualization_msgs::MarkerArray muscles;
     lines_->fill(*model_, frame.displacements, frame.activation, muscles);
-    publish_markers(muscles_, muscles);
-  }
-  if (eyes_.getNumSubscribers() > 0)
-  {
-    visualization_msgs::MarkerArray eyes = to_eyeballs(*model_, frame.bones);
-    publish_markers(eyes_, eyes);
+    for (auto& marker : muscles.markers)
+    {
+      marker.header.frame_id = face_frame_;
+      marker.header.stamp = stamp;
+    }
+    muscles_.publish(muscles);
   }
   state_.publish(face_frame_, stamp,
                  [&](auto& state)

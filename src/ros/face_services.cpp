@@ -70,15 +70,17 @@ bool FaceNode::on_step(Step::Request& request, Step::Response& response)
         if (!one_at_a_time)
           throw Error("another step is under way");
         Frame frame;
+        frame.time = time_;
         double left = request.seconds;
         paused_ = true;  // frames of this step must say so already
         do
         {
-          const double time = time_;
-          const double seconds = inputs_.timed(time) && left > piece ? piece : left;
-          inputs_.play(running, time + seconds);
-          frame = running.step(seconds);
+          const double seconds = inputs_.timed(frame.time) && left > piece ? piece : left;
+          inputs_.play(running, frame.time + seconds);
           left -= seconds;
+          // The clock may stand still during a step, so that frames of its pieces could not be told apart by their
+          // stamps.
+          frame = running.step(seconds, left <= 0);
         } while (left > 0 && !frame.failed && !stopping_);
         paused_ = running.paused();
         response.time = frame.time;

@@ -1,12 +1,38 @@
 #include "ros/marker_meshes.hpp"
 
 #include "frontalis/render/face_appearance.hpp"
+#include "frontalis/ros/shading.hpp"
 
 #include <algorithm>
 #include <map>
 
 namespace frontalis
 {
+
+namespace
+{
+
+// Gives a mesh the colours and labels of painted teeth. The marker's colours include light, except for what is drawn
+// without it; the light is found by lighting the same mesh in white.
+void paint(const std::vector<std_msgs::ColorRGBA>& colours, const std::vector<std::int32_t>& corners, RenderMesh& mesh)
+{
+  mesh.colours.assign(mesh.vertices.size(), { { 1, 1, 1 } });
+  mesh.labels.assign(mesh.vertices.size(), body_label);
+  const std::vector<std::array<float, 3>> white = lit(mesh);
+  for (std::size_t c = 0; c < std::min(corners.size(), colours.size()); ++c)
+  {
+    const auto vertex = static_cast<std::size_t>(corners[c]);
+    const std::array<float, 3> colour{ colours[c].r, colours[c].g, colours[c].b };
+    mesh.colours[vertex] = colour;
+    if (colour == inside_colour)
+      mesh.labels[vertex] = inside_label;
+    else
+      for (std::size_t i = 0; i < 3; ++i)
+        mesh.colours[vertex][i] = std::min(1.0F, colour[i] / std::max(white[vertex][i], 0.01F));
+  }
+}
+
+}  // namespace
 
 RenderMesh mesh_of_iris(const visualization_msgs::Marker& marker)
 {
@@ -39,8 +65,13 @@ RenderMesh mesh_of_body(const visualization_msgs::Marker& marker)
   }
   for (std::size_t c = 0; c + 2 < corners.size(); c += 3)
     mesh.triangles.push_back({ corners[c], corners[c + 1], corners[c + 2] });
-  // What is shown without touching has colours of its own, in which rviz shows it lit; so have painted teeth.
-  const bool only_shown = !marker.colors.empty() && marker.ns.compare(0, 5, "teeth") != 0;
+  if (!marker.colors.empty() && marker.ns.compare(0, 5, "teeth") == 0)
+  {
+    paint(marker.colors, corners, mesh);
+    return mesh;
+  }
+  // What is shown without touching has colours too.
+  const bool only_shown = !marker.colors.empty();
   TriangleMesh surface;
   surface.triangles = mesh.triangles;
   for (const auto& p : mesh.vertices)
@@ -55,6 +86,16 @@ RenderBall ball_of(const visualization_msgs::Marker& marker)
 {
   const auto& p = marker.pose.position;
   return { { p.x, p.y, p.z }, 0.5 * marker.scale.x, { marker.color.r, marker.color.g, marker.color.b }, eye_label };
+}
+
+RenderMesh moved(RenderMesh mesh, const RigidTransform& pose)
+{
+  for (auto& vertex : mesh.vertices)
+  {
+    const std::array<double, 3> p = pose(vertex);
+    vertex = { static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]) };
+  }
+  return mesh;
 }
 
 }  // namespace frontalis

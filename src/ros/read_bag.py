@@ -1,15 +1,18 @@
 #!/usr/bin/python3
 """Reads a bag of landmarks, and of joints if there are some, into tables for frontalis retarget and calibrate (doc/fitting.md).
 
-usage: read_bag.py BAG FOLDER [--face face] [--joints joint_states] [--still SECONDS | --rate HZ]
+usage: read_bag.py BAG FOLDER [--face face] [--joints joint_states] [--still SECONDS [--tolerance 1e-4] | --rate HZ]
 
 Writes FOLDER/landmarks.csv: displacements of the landmarks from the first message, in the face frame, at times from that message on.
-The names of landmarks come from the topic state of the face. With --still only poses are written in which the joints had not moved for
-so long; FOLDER/joints.csv has their positions and efforts at the same times. With --rate at most so many times per second are written.
+The names of landmarks come from the topic state of the face. With --still only poses are written in which the joints had not moved by
+more than the tolerance [rad or m] for so long, and did not move until the next message of each joint. FOLDER/joints.csv has the latest
+positions and efforts at the same times, of the joints that were known at the first of them. With --rate at most so many times per second
+are written.
 """
 
 import argparse
 import csv
+import itertools
 import os
 import sys
 
@@ -21,34 +24,42 @@ def fail(reason):
 
 
 def moments(bag, options):
-    """Yields the time [s], the landmarks and the latest joints of each moment to be written."""
+    """Yields the time [s], the landmarks, and position and effort of each joint by its name, of each moment to be written."""
     places, names = "/%s/landmarks" % options.face.strip("/"), "/%s/state" % options.face.strip("/")
     joint_topic = "/" + options.joints.strip("/")
-    joints = moved = start = last = names_of = pending = None
+    joints = {}  # the latest position and effort of each joint; several nodes may publish some of the joints each
+    held = {}  # the positions at which the joints stand still since the time `moved`
+    unheard = set()  # joints without a message since the landmarks of `pending`
+    moved = start = last = names_of = pending = confirmed = None
     for topic, message, stamp in bag.read_messages([places, names, joint_topic]):
         now = stamp.to_sec()
         if topic == names:
             names_of = message.landmark
         elif topic == joint_topic:
-            if joints is None or list(message.position) != list(joints.position):
-                if pending:
-                    yield pending
-                pending, moved = None, now
-            joints = message
+            joints.update(zip(message.name, zip(message.position, message.effort or itertools.repeat(None))))
+            unheard.difference_update(message.name)
+            if any(name not in held or abs(joints[name][0] - held[name]) > options.tolerance for name in joints):
+                if confirmed:
+                    yield confirmed
+                # The landmarks may have moved before the joints said so.
+                pending = confirmed = None
+                moved, held = now, {name: position for name, (position, _) in joints.items()}
+            elif pending and not unheard:
+                pending, confirmed = None, pending
         elif names_of is not None and len(names_of) == len(message.poses):
             start = now if start is None else start
-            moment = now - start, dict(zip(names_of, (pose.position for pose in message.poses))), joints
+            moment = now - start, dict(zip(names_of, (pose.position for pose in message.poses))), dict(joints)
             if start == now:
                 last = now
                 yield moment
             elif options.still:
-                # the last moment before the joints move again
-                pending = moment if moved is not None and now - moved >= options.still else None
+                if pending is None and moved is not None and now - moved >= options.still:
+                    pending, unheard = moment, set(joints)
             elif not options.rate or last is None or now - last >= 1 / options.rate:
                 last = now
                 yield moment
-    if pending:
-        yield pending
+    if confirmed:
+        yield confirmed
 
 
 def write(path, rows):
@@ -57,14 +68,12 @@ def write(path, rows):
 
 
 def joint_table(used):
-    names = list(used[0][2].name)
-    has_efforts = all(len(joints.effort) == len(joints.name) for _, _, joints in used)
-    table = [["time_s"] + names + [name + ".effort" for name in names if has_efforts]]
+    names = list(used[0][2])
+    efforts = [name for name in names if all(joints[name][1] is not None for _, _, joints in used)]
+    table = [["time_s"] + names + [name + ".effort" for name in efforts]]
     for now, _, joints in used:
-        row = ["%.6f" % now]
-        for values in [joints.position] + [joints.effort] * has_efforts:
-            row += ["%.9g" % dict(zip(joints.name, values))[name] for name in names]
-        table.append(row)
+        values = [joints[name][0] for name in names] + [joints[name][1] for name in efforts]
+        table.append(["%.6f" % now] + ["%.9g" % value for value in values])
     return table
 
 
@@ -75,12 +84,16 @@ def main():
     parser.add_argument("--face", default="face", help="name of the face's node")
     parser.add_argument("--joints", default="joint_states", help="topic of the joints")
     parser.add_argument("--still", type=float, default=0, help="time for which joints must have stood still [s]")
+    parser.add_argument("--tolerance", type=float, default=1e-4, help="change of a joint that is taken for noise [rad or m]")
     parser.add_argument("--rate", type=float, default=0, help="largest number of times per second")
     options = parser.parse_args()
     try:
         with rosbag.Bag(options.bag) as bag:
             found = list(moments(bag, options))
         os.makedirs(options.folder, exist_ok=True)
+        if options.still and len(found) == 1:
+            fail("%s: no pose in which all joints on /%s stand still for %g s (within %g rad or m)"
+                 % (options.bag, options.joints.strip("/"), options.still, options.tolerance))
         if len(found) < 2:
             fail("%s: has %d poses; needed are messages on /%s/landmarks and state, at rest first" % (options.bag, len(found), options.face))
         rest = found[0][1]
@@ -92,7 +105,7 @@ def main():
                 moved = (getattr(place, axis) - getattr(rest[name], axis) for axis in "xyz")
                 landmarks.append(["%.6f" % now, name] + ["%.6f" % (1e3 * value) for value in moved])
         write(os.path.join(options.folder, "landmarks.csv"), landmarks)
-        if all(joints is not None for _, _, joints in used):
+        if used[0][2]:
             write(os.path.join(options.folder, "joints.csv"), joint_table(used))
     except (OSError, rosbag.ROSBagException) as error:
         fail(str(error))

@@ -9,7 +9,6 @@ fast the machine is. Commands act from the beginning of the frame in which they 
 """
 
 import argparse
-import math
 import sys
 import time
 
@@ -52,6 +51,11 @@ class Replay:
             self.outputs[name] = None
             wait(subscriber.get_num_connections, "a connection to " + name)
 
+    def call(self, service, *arguments):
+        answer = service(*arguments)
+        if not answer.success:
+            sys.exit("replay_bag: %s: %s" % (service.resolved_name, answer.message))
+
     def set_clock(self, now):
         def reached():
             self.clock.publish(Clock(now))
@@ -74,20 +78,19 @@ class Replay:
             sys.exit("replay_bag: the bag has no message on any of " + " ".join(names))
         start = commands[0][0]
         self.set_clock(start)
-        rospy.ServiceProxy(self.face + "/reset", Trigger)()
-        frames = math.floor((commands[-1][0] - start).to_sec() * rate) + 1
-        sent = 0
-        for frame in range(frames):
-            end = start + rospy.Duration((frame + 1) / rate)
+        self.call(rospy.ServiceProxy(self.face + "/reset", Trigger))
+        frames = sent = 0
+        while sent < len(commands):
+            frames += 1
+            # Whole nanoseconds: a sum of rounded durations would drift, and the last command could be after the last frame.
+            end = rospy.Time(*divmod(start.to_nsec() + round(frames * 1e9 / rate), 10**9))
             while sent < len(commands) and commands[sent][0] < end:
                 stamp, topic, message = commands[sent]
                 self.set_clock(stamp)
                 self.send(topic, message)
                 sent += 1
             self.set_clock(end)
-            answer = self.step(1 / rate)
-            if not answer.success:
-                sys.exit("replay_bag: " + answer.message)
+            self.call(self.step, 1 / rate)
             for name in self.outputs:
                 wait(lambda name=name: self.outputs[name] and self.outputs[name].header.stamp == end, name)
                 output.write(name, self.outputs[name], end)

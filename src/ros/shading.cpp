@@ -131,4 +131,20 @@ void SkinShading::colours(const SkinState& skin, const std::vector<float>& value
   }
 }
 
+std::vector<std::array<float, 3>> lit(const RenderMesh& mesh)
+{
+  SkinState state;
+  state.normals = normals_of(mesh);
+  state.vertices = mesh.vertices;
+  TriangleMesh surface;
+  surface.triangles = mesh.triangles;
+  surface.vertices.resize(mesh.vertices.size());
+  std::vector<std::array<float, 3>> out;
+  SkinShading(surface, mesh.colours).colours(state, {}, out);
+  for (std::size_t vertex = 0; vertex < mesh.labels.size(); ++vertex)
+    if (mesh.labels[vertex] == inside_label)
+      out[vertex] = inside_colour;
+  return out;
+}
+
 }  // namespace frontalis

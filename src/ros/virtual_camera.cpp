@@ -152,8 +152,7 @@ bool VirtualCamera::is_complete() const
   if (!topology || !skin || !landmarks || !state || !eyes || !bodies)
     return false;
   const ros::Time stamp = skin->header.stamp;
-  return landmarks->header.stamp == stamp && state->header.stamp == stamp &&
-         (eyes->markers.empty() || eyes->markers[0].header.stamp == stamp) && skin->width > 0 &&
+  return landmarks->header.stamp == stamp && state->header.stamp == stamp && skin->width > 0 &&
          skin->width == topology->vertices.size() && landmarks->poses.size() == state->landmark.size();
 }
 
@@ -206,7 +205,7 @@ SkinState VirtualCamera::skin() const
 
 // Colours and labels follow from the places of landmarks at rest. Those are not published: they are taken to be where
 // the vertices rest that are closest to the landmarks now.
-void VirtualCamera::find_appearance(const SkinState& skin)
+void VirtualCamera::find_appearance(const SkinState& skin, const std::vector<RenderBall>& eyes)
 {
   std::vector<std::array<float, 3>> rest;
   for (const auto& p : inputs_.topology->vertices)
@@ -220,10 +219,6 @@ void VirtualCamera::find_appearance(const SkinState& skin)
                                           [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
     places.push_back(rest[static_cast<std::size_t>(closest - skin.vertices.begin())]);
   }
-  std::vector<RenderBall> eyes;
-  for (const auto& marker : inputs_.eyes->markers)
-    if (marker.type == visualization_msgs::Marker::SPHERE)
-      eyes.push_back(ball_of(marker));
   appearance_ = skin_appearance(inputs_.state->landmark, places, rest, eyes);
   triangles_.clear();
   for (const auto& triangle : inputs_.topology->triangles)
@@ -232,7 +227,7 @@ void VirtualCamera::find_appearance(const SkinState& skin)
     triangles_.push_back({ static_cast<std::int32_t>(corners[0]), static_cast<std::int32_t>(corners[1]),
                            static_cast<std::int32_t>(corners[2]) });
   }
-  appearance_of_ = inputs_.topology;  // last: after an exception, the next picture starts anew
+  appearance_of_ = { inputs_.topology, inputs_.eyes };  // last: after an exception, the next picture starts anew
 }
 
 // Waits for a transform that may come a little later than the messages of its frame. tf2's own waiting does not end
@@ -255,6 +250,24 @@ RigidTransform VirtualCamera::transform(const std::string& to, const std::string
   return found;
 }
 
+void VirtualCamera::add_eyes(const std::string& face_frame, const ros::Time& stamp, RenderScene& scene)
+{
+  for (const visualization_msgs::Marker& marker : inputs_.eyes->markers)
+  {
+    // others remove the eyes of an earlier scene
+    if (marker.action != visualization_msgs::Marker::ADD)
+      continue;
+    const RigidTransform pose = transform(face_frame, marker.header.frame_id, stamp);
+    if (marker.type == visualization_msgs::Marker::TRIANGLE_LIST)
+    {
+      scene.meshes.push_back(moved(mesh_of_iris(marker), pose));
+      continue;
+    }
+    RenderBall& ball = scene.balls.emplace_back(ball_of(marker));
+    ball.centre = pose(ball.centre);
+  }
+}
+
 void VirtualCamera::add_bodies(const std::string& face_frame, const ros::Time& stamp, RenderScene& scene)
 {
   const auto& markers = inputs_.bodies->markers;
@@ -271,12 +284,7 @@ void VirtualCamera::add_bodies(const std::string& face_frame, const ros::Time& s
     if (marker.action != visualization_msgs::Marker::ADD)
       continue;
     const RigidTransform pose = transform(face_frame, marker.header.frame_id, stamp);
-    RenderMesh& mesh = scene.meshes.emplace_back(body_meshes_[at]);
-    for (auto& vertex : mesh.vertices)
-    {
-      const std::array<double, 3> p = pose(vertex);
-      vertex = { static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]) };
-    }
+    const RenderMesh& mesh = scene.meshes.emplace_back(moved(body_meshes_[at], pose));
     // an eyeball that lids touch is drawn as a ball
     const auto is_eyeball = [&mesh](const RenderBall& ball)
     {
@@ -301,22 +309,15 @@ void VirtualCamera::take_picture()
   try
   {
     const SkinState skin = this->skin();
-    if (appearance_of_ != inputs_.topology)
-      find_appearance(skin);
     RenderScene scene;
+    add_eyes(face_frame, header.stamp, scene);
+    if (appearance_of_ != std::make_pair(inputs_.topology, inputs_.eyes))
+      find_appearance(skin, scene.balls);
+    const std::vector<RenderBall> eyes = scene.balls;
+    std::transform(eyes.begin(), eyes.end(), std::back_inserter(scene.balls), socket_of);
     scene.meshes.push_back({ skin.vertices, triangles_, skin.normals, appearance_.colours, appearance_.labels });
     if (appearance_.mouth)
       scene.balls.push_back(*appearance_.mouth);
-    for (const auto& marker : inputs_.eyes->markers)
-    {
-      if (marker.type == visualization_msgs::Marker::TRIANGLE_LIST)
-      {
-        scene.meshes.push_back(mesh_of_iris(marker));
-        continue;
-      }
-      scene.balls.push_back(ball_of(marker));
-      scene.balls.push_back(socket_of(scene.balls.back()));
-    }
     add_bodies(face_frame, header.stamp, scene);
     camera_.to_camera = transform(frame_, face_frame, header.stamp);
     const Renderer renderer(scene, camera_);

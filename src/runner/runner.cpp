@@ -125,12 +125,13 @@ void Runner::cancel_step()
   self_->cancel_wanted = self_->step_request != nullptr;
 }
 
-Frame Runner::step(double seconds)
+Frame Runner::step(double seconds, bool hands_out)
 {
   if (!(seconds > 0) || !std::isfinite(seconds))
     throw Error(fmt::format("step of {} s: allowed are finite durations above 0", seconds));
   Implementation::StepRequest request;
   request.seconds = seconds;
+  request.hands_out = hands_out;
   std::unique_lock<std::mutex> lock(self_->mutex);
   if (self_->step_request != nullptr)
     throw Error("another step is under way");

@@ -40,6 +40,7 @@ struct Runner::Implementation
   struct StepRequest
   {
     double seconds = 0;
+    bool hands_out = true;  ///< whether the frame reached goes to on_frame
     bool done = false;
     std::string error;
     Frame frame;
@@ -77,7 +78,7 @@ struct Runner::Implementation
   void fail(const std::string& reason);
   void measure_cost();
   void make_frame(bool renew_monitor);
-  void publish(bool renew_monitor = false);
+  void publish(bool renew_monitor = false, bool hands_out = true);
   void run_frame();
   void serve_step(StepRequest& request);
   void serve_switch(SwitchRequest& request);

@@ -130,11 +130,11 @@ void Runner::Implementation::make_frame(bool renew_monitor)
   ++frame.sequence;
 }
 
-void Runner::Implementation::publish(bool renew_monitor)
+void Runner::Implementation::publish(bool renew_monitor, bool hands_out)
 {
   frame.real_time_factor = clock.record_frame(Clock::now(), time());
   make_frame(renew_monitor);
-  if (on_frame)
+  if (on_frame && (hands_out || frame.failed))
     on_frame(frame);
 }
 
@@ -210,7 +210,7 @@ void Runner::Implementation::serve_step(StepRequest& request)
     else if (switch_request != nullptr)
       serve_switch(*switch_request);
   }
-  publish(true);
+  publish(true, request.hands_out);
   request.frame = frame;
 }
 

@@ -143,7 +143,7 @@ TEST(Gltf, HasTheSkinAtRestAndAMorphTargetPerActionUnit)
   const nlohmann::json json = json_from(file.substr(20, text));
   const auto& mesh = json["meshes"][0];
   EXPECT_EQ(mesh["extras"]["targetNames"], (std::vector<std::string>{ "AU1", "AU2" }));
-  ASSERT_EQ(mesh["primitives"].size(), 2u);  // skin and finger
+  ASSERT_EQ(mesh["primitives"].size(), 5u);  // skin, iris, finger, eyeball and the dark ball behind it
   const auto& skin = mesh["primitives"][0];
   const auto& place = json["accessors"][skin["attributes"]["POSITION"].get<std::size_t>()];
   // y is up: the bar is 20 mm high
@@ -155,7 +155,7 @@ TEST(Gltf, HasTheSkinAtRestAndAMorphTargetPerActionUnit)
   EXPECT_GT(lift(1), 0.5e-3);
   EXPECT_GT(lift(0), 1.5 * lift(1));
   // AU2 moves the finger down by 3 mm
-  const auto& finger = json["accessors"][mesh["primitives"][1]["targets"][1]["POSITION"].get<std::size_t>()];
+  const auto& finger = json["accessors"][mesh["primitives"][2]["targets"][1]["POSITION"].get<std::size_t>()];
   EXPECT_NEAR(finger["min"][1].get<double>(), -3e-3, 1e-6);
   EXPECT_NEAR(finger["max"][1].get<double>(), -3e-3, 1e-6);
   for (const auto& view : json["bufferViews"])

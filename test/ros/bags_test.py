@@ -56,8 +56,8 @@ class Bags(unittest.TestCase):
         done = subprocess.run([SCRIPTS + command[0], *command[1:]], capture_output=True, check=False, text=True)
         self.assertEqual(done.returncode, 0, done.stderr)
 
-    def replayed(self, commands, output):
-        self.run_script("replay_bag.py", commands, output, "--topics", *TOPICS)
+    def replayed(self, commands, output, *options):
+        self.run_script("replay_bag.py", commands, output, "--topics", *TOPICS, *options)
         with rosbag.Bag(output) as bag:
             return [(topic, stamp.to_nsec(), message) for topic, message, stamp in bag.read_messages()]
 
@@ -66,27 +66,61 @@ class Bags(unittest.TestCase):
             return list(csv.DictReader(file))
 
     def test_landmarks_and_joints_become_tables(self):
-        """The joint stands still at 0, 2 and 5 mm for 0.1 s or more; the landmark rises by twice that."""
+        """The joint stands still at 0, 2 and 5 mm for 0.1 s or more; the landmark rises by twice that. Messages of joints are rarer than
+        those of landmarks, and come from two nodes; one joint has noise."""
         with tempfile.TemporaryDirectory() as folder:
             with rosbag.Bag(folder + "/babbling.bag", "w") as bag:
                 bag.write("/face/state", SimulationState(landmark=["tip"]), rospy.Time(9))
-                for index in range(100):
+                for index in range(120):
                     now = rospy.Time.from_sec(10 + 0.01 * index)
-                    position = min(2e-3, max(0, 1e-4 * (index - 10))) + min(3e-3, max(0, 1e-4 * (index - 60)))
-                    joint = JointState(name=["lift"], position=[position], effort=[1e3 * position])
-                    bag.write("/joint_states", joint, now)
+                    position = min(2e-3, max(0, 1e-4 * (index - 14))) + min(3e-3, max(0, 1e-4 * (index - 64)))
+                    if index % 4 == 0:
+                        joint = JointState(name=["lift"], position=[position], effort=[1e3 * position])
+                        bag.write("/joint_states", joint, now)
+                    elif index % 4 == 2:
+                        bag.write("/joint_states", JointState(name=["turn"], position=[0.3 + 2e-5 * (index % 3)]), now)
                     tip = Pose(position=Point(0.1, 0, 2 * position - 0.05))
                     bag.write("/face/landmarks", PoseArray(poses=[tip]), now + rospy.Duration(0.001))
-            self.run_script("read_bag.py", folder + "/babbling.bag", folder, "--still", "0.09")
+            self.run_script("read_bag.py", folder + "/babbling.bag", folder, "--still", "0.05")
             joints, landmarks = self.table(folder + "/joints.csv"), self.table(folder + "/landmarks.csv")
             self.assertEqual([(float(row["lift"]), float(row["lift.effort"])) for row in joints], [(0, 0), (0.002, 2), (0.005, 5)])
+            for row in joints:
+                self.assertAlmostEqual(float(row["turn"]), 0.3, delta=1e-4)
+                self.assertNotIn("turn.effort", row)
             self.assertEqual([row["landmark"] for row in landmarks], ["tip"] * 3)
             self.assertEqual([float(row["up_mm"]) for row in landmarks], [0, 4, 10])
             self.assertEqual([row["time_s"] for row in joints], [row["time_s"] for row in landmarks])
             self.run_script("read_bag.py", folder + "/babbling.bag", folder, "--rate", "10")
             track = self.table(folder + "/landmarks.csv")
             self.assertEqual(float(track[0]["time_s"]), 0)
-            self.assertEqual(len(track), 10)
+            self.assertEqual(len(track), 12)
+            with self.assertRaisesRegex(AssertionError, "no pose in which all joints on /joint_states stand still for 5 s"):
+                self.run_script("read_bag.py", folder + "/babbling.bag", folder, "--still", "5")
+
+    def test_plays_the_last_command_and_one_frame_for_each_moment(self):
+        """Commands come at the ends of frames, in nanoseconds. The long step of a moving face has pieces that are not published."""
+        states = []
+        listener = rospy.Subscriber("/face/state", SimulationState, states.append, queue_size=1000)
+        with tempfile.TemporaryDirectory() as folder:
+            with rosbag.Bag(folder + "/commands.bag", "w") as bag:
+                bag.write("/face/expression", Expression(name=["drop"], onset=1), rospy.Time(10))
+                for index in range(1, 11):
+                    now = rospy.Time(10, index * 10**9 // 30)
+                    command = MuscleActivation(name=["frontalis_right"], activation=[0.7 if index == 10 else 0.2])
+                    bag.write("/face/muscle_activation", command, now)
+            for rate, frames in ((30, 11), (10, 4)):
+                states.clear()
+                output = self.replayed(folder + "/commands.bag", folder + "/output.bag", "--rate", str(rate))
+                written = [message for topic, _, message in output if topic == "/face/state"]
+                for frame, state in enumerate(written):
+                    self.assertAlmostEqual(state.time, (frame + 1) / rate, 9)
+                self.assertEqual(len(written), frames)
+                right = written[-1].name.index("frontalis_right")
+                self.assertAlmostEqual(written[-1].activation[right], 0.7, 6)
+                stamps = [state.header.stamp for state in states]
+                self.assertEqual(len(stamps), len(set(stamps)))
+                self.assertGreaterEqual(len(stamps), frames)
+        listener.unregister()
 
     def test_gives_equal_bytes(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A virtual camera that sees a bar of tissue and a finger: its images, points and landmarks, as node and as nodelet."""
+"""A virtual camera that sees a bar of tissue, a finger and an eye: its images, points and landmarks, as node and as nodelet."""
 
 import math
 import struct
@@ -9,14 +9,16 @@ import rospy
 import rostest
 import sensor_msgs.point_cloud2
 import tf2_ros
+from geometry_msgs.msg import TransformStamped
 from sensor_msgs.msg import CameraInfo, Image, PointCloud2
+from visualization_msgs.msg import MarkerArray
 
 from face import Face, wait
 
 TOPICS = {"camera_info": CameraInfo, "rgb": Image, "depth": Image, "labels": Image, "points": PointCloud2,
           "landmarks": PointCloud2}
 WIDTH, HEIGHT = 160, 120
-BODY, SKIN = 3, 4
+EYE, BODY, SKIN = 2, 3, 4
 
 
 class Camera(unittest.TestCase):
@@ -109,6 +111,38 @@ class Camera(unittest.TestCase):
         shot = self.picture(second)
         self.assertEqual((shot["rgb"].width, shot["rgb"].height), (640, 480))
         self.assertGreater(shot["labels"].data.count(SKIN), 1000)
+
+    def test_eye_is_sent_once_and_turns_with_its_bone(self):
+        markers, first = [], self.listen("camera")
+        rospy.Subscriber("/face/eyes", MarkerArray, markers.append)
+        wait(lambda: markers, "the markers of the eye")
+
+        def pupil(shot):
+            """Number of pixels of the eye that are dark."""
+            colours = shot["rgb"].data
+            return sum(label == EYE and sum(colours[3 * pixel:3 * pixel + 3]) < 60 for pixel, label in enumerate(shot["labels"].data))
+        ahead = self.picture(first)
+        self.assertGreater(ahead["labels"].data.count(EYE), 300)
+        self.assertGreater(pupil(ahead), 10)
+        # the front of the ball on the line from the camera to its centre, 7 mm before the centre; the iris is at most 0.5 mm higher
+        self.frames.can_transform("camera_optical_frame", "face", rospy.Time(0), rospy.Duration(10))
+        centre = self.frames.lookup_transform("camera_optical_frame", "face/bone/eye_left", rospy.Time(0)).transform.translation
+        k = ahead["camera_info"].K
+        pixel = round(k[5] + k[4] * centre.y / centre.z) * WIDTH + round(k[2] + k[0] * centre.x / centre.z)
+        distance = math.sqrt(centre.x ** 2 + centre.y ** 2 + centre.z ** 2)
+        depth = struct.unpack_from("<f", ahead["depth"].data, 4 * pixel)[0]
+        self.assertAlmostEqual(depth, centre.z * (1 - 0.007 / distance), delta=5e-4)
+
+        poses = rospy.Publisher("/face/bone_pose", TransformStamped, queue_size=1)
+        wait(poses.get_num_connections, "a connection")
+        aside = TransformStamped(child_frame_id="eye_left")
+        # a quarter turn to the right about the centre of the eye, which is at (0, 16, 4) mm
+        aside.transform.rotation.z, aside.transform.rotation.w = -math.sqrt(0.5), math.sqrt(0.5)
+        aside.transform.translation.x, aside.transform.translation.y = -0.016, 0.016
+        poses.publish(aside)
+        after = self.picture(first, lambda: "rgb" in first and "labels" in first and pupil(first) == 0)
+        self.assertGreater(after["labels"].data.count(EYE), 300)
+        self.assertEqual(len(markers), 1)
 
     def test_camera_without_a_place_sends_nothing_and_the_others_go_on(self):
         lost, first, second = (self.listen(camera) for camera in ("lost", "camera", "second"))

@@ -1,7 +1,9 @@
+#include "frontalis/render/face_appearance.hpp"
 #include "frontalis/ros/conversions.hpp"
 #include "frontalis/ros/muscle_lines.hpp"
 #include "frontalis/solver/rigid_motion.hpp"
 
+#include "ros/marker_meshes.hpp"
 #include "ros/small_model.hpp"
 
 #include <gtest/gtest.h>
@@ -11,6 +13,7 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <set>
 
 namespace frontalis
 {
@@ -163,21 +166,68 @@ TEST(Conversions, BonesBecomeFramesAndEyesAreShownInTheirs)
   EXPECT_NEAR(transforms[2].transform.translation.y, 0.03, 1e-9);
   EXPECT_NEAR(transforms[2].transform.rotation.z, std::sqrt(0.5), 1e-9);
 
-  // the iris is a cap on the eyeball, in the direction of gaze
-  const auto markers = to_eyeballs(model, frame.bones).markers;
+  // In the bone's frame, the iris is a cap on the ball around the origin, and the eye looks along x.
+  const auto markers = to_eyeballs(model, "face_7").markers;
   ASSERT_EQ(markers.size(), 2u);
-  EXPECT_EQ(markers[0].ns, "eye_left");
-  EXPECT_NEAR(markers[0].pose.position.x, 0.01, 1e-9);
+  for (const auto& marker : markers)
+  {
+    EXPECT_EQ(marker.ns, "eye_left");
+    EXPECT_EQ(marker.header.frame_id, transforms[2].child_frame_id);
+    EXPECT_TRUE(marker.header.stamp.isZero());
+    EXPECT_TRUE(marker.frame_locked);
+  }
+  EXPECT_NE(markers[0].id, markers[1].id);
+  EXPECT_EQ(markers[0].pose.position, geometry_msgs::Point());
   EXPECT_NEAR(markers[0].scale.y, 0.024, 1e-9);
   ASSERT_FALSE(markers[1].points.empty());
   EXPECT_EQ(markers[1].colors.size(), markers[1].points.size());
   for (const auto& point : markers[1].points)
   {
-    EXPECT_GT(std::hypot(point.x - 0.01, point.y - 0.03, point.z + 0.01), 0.012);
-    EXPECT_LT(std::hypot(point.x - 0.01, point.z + 0.01), 0.0065);
-    EXPECT_LT(point.y, 0.03 + 0.014);
-    EXPECT_GT(point.y, 0.03);
+    EXPECT_GT(std::hypot(point.x, point.y, point.z), 0.012);
+    EXPECT_LT(std::hypot(point.y, point.z), 0.0065);
+    EXPECT_LT(point.x, 0.014);
+    EXPECT_GT(point.x, 0);
   }
+}
+
+TEST(Conversions, PaintedTeethComeBackFromTheirMarker)
+{
+  Model model = small_model();
+  model.landmarks.push_back("mouth_corner_left");
+  model.landmark_positions.push_back({ { 0, 0.03, 0 } });
+  Contact teeth;
+  teeth.name = "teeth_upper";
+  teeth.points = { { { 0, 0, 0 } } };
+  teeth.centre = { { 0.01, 0, 0 } };
+  // a wall of 60 x 40 mm that faces forwards
+  constexpr std::int32_t columns = 31, rows = 21;
+  const RigidTransform from_face = inverse(model.to_face);
+  for (std::int32_t r = 0; r < rows; ++r)
+    for (std::int32_t c = 0; c < columns; ++c)
+    {
+      teeth.shape.vertices.push_back(from_face(std::array<double, 3>{ { -0.01, 2e-3 * c - 0.03, 2e-3 * r - 0.02 } }));
+      const std::int32_t corner = r * columns + c;
+      if (c + 1 == columns || r + 1 == rows)
+        continue;
+      teeth.shape.triangles.push_back({ corner, corner + 1, corner + columns + 1 });
+      teeth.shape.triangles.push_back({ corner, corner + columns + 1, corner + columns });
+    }
+  model.contacts.push_back(teeth);
+  const RenderMesh painted = body_at_rest(model, body_shapes(model)[0]);
+  const RenderMesh seen = mesh_of_body(to_bodies(model, "face_7").markers.at(0));
+  ASSERT_EQ(seen.triangles.size(), painted.triangles.size());
+  std::set<std::uint8_t> labels;
+  for (std::size_t t = 0; t < seen.triangles.size(); ++t)
+    for (std::size_t corner = 0; corner < 3; ++corner)
+    {
+      const auto s = static_cast<std::size_t>(seen.triangles[t][corner]);
+      const auto p = static_cast<std::size_t>(painted.triangles[t][corner]);
+      ASSERT_EQ(seen.labels[s], painted.labels[p]);
+      labels.insert(seen.labels[s]);
+      for (std::size_t channel = 0; channel < 3; ++channel)
+        ASSERT_NEAR(seen.colours[s][channel], painted.colours[p][channel], 0.05F) << t;
+    }
+  EXPECT_EQ(labels, (std::set<std::uint8_t>{ inside_label, body_label }));
 }
 
 TEST(Conversions, LandmarksOnSkinThatFacesUpHaveAxesToo)

@@ -131,6 +131,17 @@ TEST(Runner, LockStepAdvancesExactlyAndComesBack)
   EXPECT_NEAR(tip(runner.step(0.2)), 6e-3, 2e-5);
 }
 
+TEST(Runner, HandsOutNoFrameOfAStepThatGoesOn)
+{
+  std::vector<double> times;
+  Runner runner(bar(), settings(Pace::lock_step), [&](const Frame& frame) { times.push_back(frame.time); });
+  EXPECT_NEAR(runner.step(0.01, false).time, 0.01, 1e-12);
+  EXPECT_TRUE(times.empty());
+  runner.step(0.01);
+  ASSERT_EQ(times.size(), 1u);
+  EXPECT_NEAR(times[0], 0.02, 1e-12);
+}
+
 TEST(Runner, PublishesWhatMusclesDoAndNotWhatIsAsked)
 {
   Model slow = *bar();

@@ -69,9 +69,8 @@ geometry_msgs::Wrench to_wrench(const Model& model, const BodyShape& shape, cons
 /// Those that are only shown, such as the rest of a head, have lit colours at their vertices, as the skin has.
 visualization_msgs::MarkerArray to_bodies(const Model& model, const std::string& face_frame);
 /// The eyeballs: spheres that tissue slides on and whose bones have names that begin with "eye". Each eyeball has two
-/// markers: a sphere, and the iris with its pupil as triangles. `bones`: the bones of a frame of the motion. Fills all
-/// but the headers.
-visualization_msgs::MarkerArray to_eyeballs(const Model& model, const std::vector<BodyFrame>& bones);
+/// markers: a sphere about the origin of the bone's frame, and in that frame the iris with its pupil as triangles.
+visualization_msgs::MarkerArray to_eyeballs(const Model& model, const std::string& face_frame);
 
 /// The rigid motion that a transform describes. Throws an Error if the length of its quaternion differs from 1 by more
 /// than 1e-3.

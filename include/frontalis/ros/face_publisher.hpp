@@ -16,7 +16,9 @@
 #include <atomic>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace frontalis
@@ -32,8 +34,8 @@ public:
   /// Advertises the topics; nothing is published yet.
   explicit FacePublisher(ros::NodeHandle private_handle);
 
-  /// Sets the model and publishes its topology and its bodies (latched). If `parent_frame` is not empty, it also
-  /// publishes an identity transform from that frame to the face frame.
+  /// Sets the model and publishes its topology, its bodies and its eyeballs (latched). If `parent_frame` is not empty,
+  /// it also publishes an identity transform from that frame to the face frame.
   void start(std::shared_ptr<const Model> model, const std::string& face_frame, const std::string& parent_frame,
              const std::string& backend);
 
@@ -79,8 +81,11 @@ private:
     boost::shared_ptr<Message> message{};
   };
 
-  /// Shows the bodies of the model in place of those of the model before, whose shapes are still in shapes_.
+  /// Shows the bodies and eyeballs of the model in place of those of the model before.
   void publish_bodies();
+  using MarkerNames = std::set<std::pair<std::string, std::int32_t>>;  ///< `ns` and `id` of markers
+  /// Publishes these markers, and removes what the topic has shown before and they do not replace.
+  void publish_latched(visualization_msgs::MarkerArray markers, const ros::Publisher& publisher, MarkerNames& shown);
   std::vector<float> shown_values(const Frame& frame) const;
 
   Topic<visualization_msgs::Marker> skin_;
@@ -90,6 +95,7 @@ private:
   std::vector<Topic<geometry_msgs::WrenchStamped>> wrenches_;  ///< one per entry of shapes_
   std::atomic<bool> bone_listeners_{ false };  ///< whether the topic of a bone had subscribers at the latest frame
   ros::Publisher topology_, bodies_, muscles_, eyes_, caption_;
+  MarkerNames shown_bodies_, shown_eyes_;
   ros::NodeHandle handle_;
   tf2_ros::TransformBroadcaster transforms_;
   tf2_ros::StaticTransformBroadcaster static_transforms_;

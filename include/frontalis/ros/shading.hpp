@@ -1,6 +1,7 @@
 #pragma once
 
 #include "frontalis/model/model.hpp"
+#include "frontalis/render/renderer.hpp"
 #include "frontalis/solver/solver.hpp"
 
 #include <array>
@@ -35,5 +36,9 @@ private:
   std::vector<std::int32_t> neighbours_;
   std::vector<std::array<float, 3>> albedo_;  // linear, before gamma
 };
+
+/// The colours of a mesh at rest, whose axes are those of the face frame, lit as the skin is, so that the two join
+/// without a seam. What has the label inside_label is drawn without light.
+std::vector<std::array<float, 3>> lit(const RenderMesh& mesh);
 
 }  // namespace frontalis

@@ -54,7 +54,8 @@ private:
   void report_silence();
   void take_picture();
   SkinState skin() const;
-  void find_appearance(const SkinState& skin);
+  void find_appearance(const SkinState& skin, const std::vector<RenderBall>& eyes);
+  void add_eyes(const std::string& face_frame, const ros::Time& stamp, RenderScene& scene);
   void add_bodies(const std::string& face_frame, const ros::Time& stamp, RenderScene& scene);
   RigidTransform transform(const std::string& to, const std::string& from, const ros::Time& stamp);
   void publish(const Images& images, const std_msgs::Header& header);
@@ -69,7 +70,8 @@ private:
   Inputs inputs_;
   bool was_complete_ = false;  ///< whether the inputs were complete since the latest report_silence()
   ros::Time pictured_;
-  shape_msgs::Mesh::ConstPtr appearance_of_;  ///< the topology that appearance_ and triangles_ are of
+  /// what appearance_ and triangles_ are of
+  std::pair<shape_msgs::Mesh::ConstPtr, visualization_msgs::MarkerArray::ConstPtr> appearance_of_;
   SkinAppearance appearance_;
   std::vector<std::array<std::int32_t, 3>> triangles_;
   visualization_msgs::MarkerArray::ConstPtr body_meshes_of_;  ///< the message that body_meshes_ are of

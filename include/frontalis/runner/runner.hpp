@@ -106,8 +106,8 @@ public:
   void cancel_step();
   /// Pauses the face, advances it by exactly `seconds` of simulated time and returns the frame reached. Activations and
   /// bones move linearly to their latest set values. Throws an Error if the motion fails, if the step is ended early,
-  /// or if another step is under way.
-  Frame step(double seconds);
+  /// or if another step is under way. With `hands_out` false, OnFrame gets the frame only if the motion fails.
+  Frame step(double seconds, bool hands_out = true);
 
   const Model& model() const;
   std::string description() const;

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""A face under a changing load: subscribers come and go, commands of all kinds arrive, good and bad. Its memory stays flat and its
-frames come in time. ./dev test --long runs it for ten minutes."""
+"""A face under a changing load: subscribers come and go, commands of all kinds arrive, good and bad. Its memory stays flat, its
+motion finite, and on a machine that is fast enough its frames come in time. ./dev test --long runs it for ten minutes."""
 
 import math
 import os
@@ -25,6 +25,7 @@ from face import Face  # noqa: E402
 RATE = 30  # frames per second, as soak.test says
 MEMORY = 2e6  # largest change of the memory after the warm-up [bytes]
 MISSED = 0.01  # largest proportion of frames that are missed
+FAST_ENOUGH = 0.98  # real-time factor of at least 95 % of the frames, unless other programs slow the machine down
 TOPICS = {"skin": Marker, "skin_points": PointCloud2, "skin_field": PointCloud2, "muscles": MarkerArray, "wrench/skull": WrenchStamped}
 MUSCLES = ["frontalis_left", "frontalis_right"]
 
@@ -43,6 +44,7 @@ class Soak(unittest.TestCase):
         self.listeners = {}
         self.previous = None
         self.frames = self.missed = 0
+        self.factors, self.failures = [], []
 
     def count(self, state):
         """Counts frames, and those that are missing in the time between two of them."""
@@ -52,6 +54,8 @@ class Soak(unittest.TestCase):
             self.frames += frames
             self.missed += max(0, due - frames)
         self.previous = state
+        self.factors.append(state.real_time_factor)
+        self.failures += [state.message] * state.failed
 
     def send_trajectory(self):
         message = JointTrajectory(joint_names=MUSCLES)
@@ -98,14 +102,20 @@ class Soak(unittest.TestCase):
             if time.monotonic() - begin > warm_up:
                 counter = counter or rospy.Subscriber("/face/state", SimulationState, self.count)
                 memory.append(resident_bytes(pid))
-        missed = self.missed / (self.frames + self.missed)
+        self.assertTrue(self.factors, "no frames")
+        missed = self.missed / max(1, self.frames + self.missed)
         change = max(memory) - min(memory)
-        print("%d frames, %.2f %% missed; memory %.1f MB, changed by %.2f MB"
-              % (self.frames, 100 * missed, memory[-1] / 1e6, change / 1e6))
-        self.assertGreater(self.frames, 0.9 * RATE * (seconds - warm_up))
-        self.assertFalse(self.face.state.failed, self.face.state.message)
+        factor = sorted(self.factors)[len(self.factors) // 20]
+        print("%d frames, %.2f %% missed; real-time factor %.3f; memory %.1f MB, changed by %.2f MB"
+              % (self.frames, 100 * missed, factor, memory[-1] / 1e6, change / 1e6))
+        self.assertEqual(self.failures, [])
+        self.assertEqual(self.face.diagnostic("frames not published as not finite"), "0")
         self.assertLessEqual(change, MEMORY)
-        self.assertLessEqual(missed, MISSED)
+        if factor < FAST_ENOUGH:
+            print("frames are not judged: the machine was too busy")
+        else:
+            self.assertGreater(self.frames, 0.9 * RATE * (seconds - warm_up))
+            self.assertLessEqual(missed, MISSED)
 
 
 if __name__ == "__main__":
