@@ -22,6 +22,8 @@ constexpr double strain_range = 0.3;
 constexpr double stress_range = 20e3;  // [Pa]
 constexpr double line_range = 0.2e-3;  // [m]
 
+const ros::WallDuration bodies_again(1);  // after the first frame
+
 }  // namespace
 
 template <typename Message>
@@ -71,6 +73,7 @@ void FacePublisher::start(std::shared_ptr<const Model> model, const std::string&
   standard_landmarks_ = standard_landmarks(*model_);
   lines_ = std::make_unique<MuscleLines>(*model_);
   publish_bodies();
+  bodies_due_ = ros::WallTime();
   shapes_ = body_shapes(*model_);
   const std::vector<BodyShape> bones = bone_shapes(*model_);
   wrenches_.clear();
@@ -221,6 +224,15 @@ bool FacePublisher::publish(const Frame& frame, const ros::Time& stamp, bool pau
     publish_wrench(first_bone + b, frame.bones[b]);
   to_transforms(*model_, frame, poses, face_frame_, stamp, frame_transforms_);
   transforms_.sendTransform(frame_transforms_);
+  // rviz can lose markers that come together with the first transforms of their frames
+  const ros::WallTime now = ros::WallTime::now();
+  if (bodies_due_ && bodies_due_->isZero())
+    bodies_due_ = now + bodies_again;
+  else if (bodies_due_ && now >= *bodies_due_)
+  {
+    bodies_due_.reset();
+    publish_bodies();
+  }
   return true;
 }
 

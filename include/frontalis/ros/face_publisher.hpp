@@ -96,6 +96,7 @@ private:
   std::atomic<bool> bone_listeners_{ false };  ///< whether the topic of a bone had subscribers at the latest frame
   ros::Publisher topology_, bodies_, muscles_, eyes_, caption_;
   MarkerNames shown_bodies_, shown_eyes_;
+  std::optional<ros::WallTime> bodies_due_{};  ///< when bodies are published again; 0: to be decided at the next frame
   ros::NodeHandle handle_;
   tf2_ros::TransformBroadcaster transforms_;
   tf2_ros::StaticTransformBroadcaster static_transforms_;
