@@ -106,11 +106,6 @@ void CudaSolver::step(StepArguments& g, int begin, int end)
   present_ = (present_ + end - begin) & 1;
 }
 
-void CudaSolver::push(const StepArguments& g, const DevicePart& part, float factor, float* const (&v)[3]) const
-{
-  require(launch_push_nodes(g, part.points(), factor, v, stream_), "pushing nodes");
-}
-
 // Makes all steps in one launch if the host has nothing to do between them, else in one launch per step. In strips the
 // forces on points change the velocities before each step.
 void CudaSolver::do_steps(const StepPlan& plan, StepArguments& g, int begin, int end)
@@ -128,13 +123,13 @@ void CudaSolver::do_steps(const StepPlan& plan, StepArguments& g, int begin, int
     for (const DevicePart* const part : pushing)
     {
       part->find_pushes(g, s, stream_);
-      push(g, *part, g.gain / g.keep, g.v);
+      part->push(g, g.gain / g.keep, g.v, stream_);
     }
     step(g, s, s + 1);
     if (!account_)
       continue;
     for (const DevicePart* const part : pushing)
-      push(g, *part, -g.gain / g.keep, g.velocity_before);
+      part->push(g, -g.gain / g.keep, g.velocity_before, stream_);
     account_->after_step(g, conditions_.damping, s, stream_);
     if (running.empty())
       continue;
@@ -232,7 +227,7 @@ void CudaSolver::queue_forces(float4* at, const float* activation, float4* out, 
   for (const auto& part : device_.parts())
   {
     part->find_pushes(g, 0, stream_);
-    push(g, *part, 0, none);
+    part->push(g, 0, none, stream_);
   }
 }
 

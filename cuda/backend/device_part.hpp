@@ -35,9 +35,10 @@ public:
   virtual std::vector<float> motion(const std::vector<std::vector<RigidTransform>>& /*bones*/) const { return {}; }
 
   // Functions for strips:
-  /// Finds the forces on points at the start of a step and stores them in points().
+  /// Finds the forces on points at the start of a step.
   virtual void find_pushes(const StepArguments& g, int step, cudaStream_t stream) const = 0;
-  virtual BoundPoints points() const = 0;
+  /// Passes the forces of find_pushes() on to nodes, as launch_push_nodes() does.
+  virtual void push(const StepArguments& g, float factor, float* const (&v)[3], cudaStream_t stream) const = 0;
 
   // Functions that need an idle stream:
   /// Passes the latest step on to the host's account. Called after each step if energies are requested.
@@ -55,6 +56,9 @@ public:
 std::vector<std::unique_ptr<DevicePart>> device_parts(const Model& model, const Discretisation& discretisation,
                                                       const VoxelCut& cut,
                                                       const std::vector<std::uint32_t>& device_node);
+
+/// Whether the model must be cut into strips, because it has an effect that patches do not compute.
+bool needs_strips(const Model& model);
 
 /// Shared memory and threads that parts need in a block of patches.
 struct PartRoom

@@ -4,6 +4,8 @@
 
 #include "frontalis/model/effects.hpp"
 
+#include <cstdlib>
+
 namespace frontalis
 {
 namespace
@@ -105,7 +107,11 @@ TEST_P(TissuesTouch, self_contact_is_switched_while_running)
   switch_off(without, EffectSet().with(Effect::self_contact));
   // The bound of the time step still includes contact.
   const double dt = 1e-5;
-  const auto solver = make(model, 2, true, dt), other = make(without, 2, true, dt);
+  const auto solver = make(model, 2, true, dt);
+  // A GPU rounds otherwise in patches than in strips, into which it cuts models with self-contact.
+  ::setenv("FRONTALIS_CUDA_PATCHES", "0", 1);
+  const auto other = make(without, 2, true, dt);
+  ::unsetenv("FRONTALIS_CUDA_PATCHES");
   solver->switch_effect(Effect::self_contact, false);
   for (Solver* const one : { solver.get(), other.get() })
     one->advance(4e-3, one->controls());
@@ -157,7 +163,7 @@ TEST_P(TissuesTouch, the_time_step_is_that_of_a_model_in_contact)
   }
 }
 
-FRONTALIS_HOST_BACKENDS(TissuesTouch);
+FRONTALIS_EVERY_BACKEND(TissuesTouch);
 
 }  // namespace
 }  // namespace frontalis

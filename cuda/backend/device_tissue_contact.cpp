@@ -1,0 +1,267 @@
+#include "cuda/backend/device_tissue_contact.hpp"
+
+#include "cuda/kernels/tissue_contact_kernels.hpp"
+#include "frontalis/physics/surface_vertex.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <numeric>
+
+namespace frontalis
+{
+namespace cuda
+{
+namespace
+{
+
+// Number of units of force (TissueContactArguments::sums) in the force of the stiffest vertex at a depth of one voxel
+// edge. A unit is below the rounding error of a single number, and sums may be 2^19 times as large as that force.
+constexpr double units_in_force = 1LL << 44;
+
+std::uint32_t bits(double x)
+{
+  const auto single = static_cast<float>(x);
+  std::uint32_t word = 0;
+  std::memcpy(&word, &single, sizeof word);
+  return word;
+}
+
+template <class T>
+DeviceArray<T> copy_of(const DeviceArray<T>& from)
+{
+  DeviceArray<T> copy(from.size());
+  require(cudaMemcpy(copy.data(), from.data(), from.bytes(), cudaMemcpyDeviceToDevice), "copying on the device");
+  return copy;
+}
+
+template <class T>
+void fill(DeviceArray<T>& array, const T& value)
+{
+  const std::vector<T> values(array.size(), value);
+  array.upload(values.data(), values.size());
+}
+
+template <class T>
+std::vector<T> values_of(const DeviceArray<T>& array)
+{
+  std::vector<T> values;
+  array.download(values);
+  return values;
+}
+
+}  // namespace
+
+TouchTables::TouchTables(const Model& model, const Discretisation& discretisation)
+{
+  const TissueContact<float> host(model, discretisation, plain_touch_kernels<float>());
+  const TouchingSurface& surface = host.surface();
+  double stiffest = 0, radius = 0;
+  for (std::size_t v = 0; v < surface.vertices.size(); ++v)
+  {
+    const TouchingSurface::Vertex& from = surface.vertices[v];
+    const double friction = model.self_contacts[from.contact].friction;
+    TouchVertex to{};
+    const auto put = [](const TouchingSurface::Vector& a, float* at)
+    {
+      at[0] = static_cast<float>(a.x);
+      at[1] = static_cast<float>(a.y);
+      at[2] = static_cast<float>(a.z);
+    };
+    put(from.rest, to.rest);
+    put(from.tangent[0], to.tangent);
+    put(from.tangent[1], to.tangent + 3);
+    to.stiffness = host.stiffness()[v];
+    to.per_area = host.per_area()[v];
+    to.overlap = host.overlap()[v];
+    to.friction = static_cast<float>(friction);
+    to.contact = from.contact;
+    to.source = from.source;
+    vertices.push_back(to);
+    voxel.push_back(static_cast<std::uint32_t>(from.voxel));
+    coordinates.push_back({ from.coordinates[0], from.coordinates[1], from.coordinates[2], 0 });
+    stiffest = std::max(stiffest, double(to.stiffness));
+    sizes.rubs = sizes.rubs || friction > 0;
+  }
+  for (const TouchingSurface::Triangle& from : surface.triangles)
+  {
+    TouchTriangle to{};
+    std::copy(from.vertex.begin(), from.vertex.end(), to.vertex);
+    std::copy(from.neighbour.begin(), from.neighbour.end(), to.neighbour);
+    triangles.push_back(to);
+    const auto at = [&](std::size_t i) { return surface.vertices[from.vertex[i]].rest; };
+    const auto centre = (1.0 / 3) * (at(0) + at(1) + at(2));
+    for (const std::size_t i : { 0, 1, 2 })
+      radius = std::max(radius, norm(at(i) - centre));
+  }
+  joined_begin = surface.joined_begin();
+  joined_sources = surface.joined_sources();
+  std::uint32_t buckets = 1;
+  while (buckets < triangles.size())
+    buckets *= 2;
+  sizes.vertex_count = static_cast<std::uint32_t>(vertices.size());
+  sizes.triangle_count = static_cast<std::uint32_t>(triangles.size());
+  sizes.bucket_mask = buckets - 1;
+  sizes.edge = static_cast<float>(surface.edge);
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    sizes.inverse_spacing[axis] = static_cast<float>(1 / model.spacing[axis]);
+  sizes.per_newton = static_cast<float>(units_in_force / std::max(stiffest * surface.edge, 1e-12));
+  rest.next = TouchStage::sort;
+  rest.radius = bits(radius);
+}
+
+DeviceTissueContact::DeviceTissueContact(const Model& model, const Discretisation& discretisation,
+                                         const std::vector<std::uint32_t>& device_node)
+    : model_(model),
+      device_node_(device_node),
+      tables_(model, discretisation),
+      all_(tables_.sizes),
+      points_(model, tables_.voxel, tables_.coordinates, device_node),
+      vertices_(tables_.vertices),
+      triangles_(tables_.triangles),
+      joined_begin_(tables_.joined_begin),
+      joined_sources_(tables_.joined_sources)
+{
+  const std::size_t count = tables_.vertices.size();
+  for (auto* const words : { &moved_, &normal_, &searched_ })
+    *words = DeviceArray<float4>(count);
+  change_ = DeviceArray<float4>(all_.rubs ? count : 0);
+  dual_ = DeviceArray<float4>(2 * count);
+  pairs_ = DeviceArray<TouchPair>(touch_search::most_pairs * count);
+  lost_ = DeviceArray<double>(count);
+  control_ = DeviceArray<TouchControl>(1);
+  heads_ = DeviceArray<std::int32_t>(std::size_t(all_.bucket_mask) + 1);
+  next_ = DeviceArray<std::int32_t>(tables_.triangles.size());
+  sums_ = DeviceArray<unsigned long long>(6 * count);
+  stored_ = DeviceArray<float>(count);
+  all_.bound = points_.view();
+  all_.vertices = vertices_.data();
+  all_.triangles = triangles_.data();
+  all_.joined_begin = joined_begin_.data();
+  all_.joined_sources = joined_sources_.data();
+  all_.moved = moved_.data();
+  all_.normal = normal_.data();
+  all_.change = change_.data();
+  all_.searched = searched_.data();
+  all_.pairs = pairs_.data();
+  all_.lost = lost_.data();
+  all_.control = control_.data();
+  all_.heads = heads_.data();
+  all_.next = next_.data();
+  all_.dual = dual_.data();
+  all_.sums = sums_.data();
+  all_.stored = stored_.data();
+  reset();
+}
+
+void DeviceTissueContact::list_arrays(ArrayList& list)
+{
+  const Effect effect = Effect::self_contact;
+  list.add(effect, "vertices", vertices_.bytes() + points_.bytes() + joined_begin_.bytes() + joined_sources_.bytes());
+  list.add(effect, "triangles", triangles_.bytes());
+  list.add(effect, "forces", dual_.bytes() + sums_.bytes() + stored_.bytes());
+  for (auto* const words : { &moved_, &normal_, &change_, &searched_ })
+    list_state(list, effect, "places", *words);
+  list_state(list, effect, "pairs", pairs_);
+  list_state(list, effect, "sums", lost_);
+  list_state(list, effect, "grid", control_);
+  list_state(list, effect, "grid", heads_);
+  list_state(list, effect, "grid", next_);
+  list.add_state(effect, "sums", opened_);
+}
+
+void DeviceTissueContact::run(EffectSet running)
+{
+  runs_ = running.has(Effect::self_contact);
+  if (!runs_)
+    reset();
+}
+
+void DeviceTissueContact::reset()
+{
+  for (auto* const words : { &moved_, &normal_, &change_, &searched_ })
+    words->clear();
+  lost_.clear();
+  sums_.clear();
+  dual_.clear();
+  fill(pairs_, TouchPair{ -1, 0, 0, 0, { 0, 0, 0 }, 0 });
+  fill(control_, tables_.rest);
+  fill(heads_, -1);
+  fill(next_, -1);
+  opened_[0] = 0;
+}
+
+void DeviceTissueContact::find_pushes(const StepArguments& g, int /*step*/, cudaStream_t stream) const
+{
+  const float4* const u = g.u[g.first];
+  require(g.contact.spring ? launch_touch_springs(all_, u, stream) : launch_touch(all_, u, g.dt_exact, stream),
+          "finding forces of contact of tissue with itself");
+}
+
+void DeviceTissueContact::push(const StepArguments& g, float factor, float* const (&v)[3], cudaStream_t stream) const
+{
+  require(launch_push_touching(g, all_, factor, v, stream), "pushing nodes");
+}
+
+// The sums of losses end at the start of the latest step. Here the forces are found once more, on copies of the state,
+// so that the losses that the next step would add are included.
+void DeviceTissueContact::add_energies(const std::vector<double> (&u)[3], const std::vector<RigidTransform>& /*bones*/,
+                                       bool open, Vectors& forces, EnergyLedger& ledger)
+{
+  std::vector<float4> displacements(device_node_.size() + 1, float4{ 0, 0, 0, 0 });
+  for (std::size_t n = 0; n < device_node_.size(); ++n)
+    displacements[device_node_[n]] = { static_cast<float>(u[0][n]), static_cast<float>(u[1][n]),
+                                       static_cast<float>(u[2][n]), 0 };
+  const DeviceArray<float4> at(displacements), moved = copy_of(moved_), normal = copy_of(normal_),
+                                               change = copy_of(change_);
+  const DeviceArray<TouchPair> pairs = copy_of(pairs_);
+  const DeviceArray<double> lost = copy_of(lost_);
+  TissueContactArguments look = all_;
+  look.looks_only = true;
+  look.moved = moved.data();
+  look.normal = normal.data();
+  look.change = change.data();
+  look.pairs = pairs.data();
+  look.lost = lost.data();
+  require(launch_touch(look, at.data(), double(values_of(control_)[0].dt), nullptr), "measuring contact");
+  const auto sum = [](const auto& values)
+  { return std::accumulate(values.begin(), values.end(), 0.0, [](double a, auto b) { return a + double(b); }); };
+  const double rubbed = sum(values_of(lost));
+  if (open)
+    opened_[0] = rubbed;
+  ledger["contact_stored"] += sum(values_of(stored_));
+  ledger["friction"] += rubbed - opened_[0];
+  if (forces.empty())
+    return;
+  const auto sums = values_of(sums_);
+  const auto normals = values_of(normal), duals = values_of(dual_);
+  for (std::size_t v = 0; v < tables_.vertices.size(); ++v)
+  {
+    using Vector = physics::Vec3<double>;
+    const auto vector = [](const auto& a) { return Vector{ double(a.x), double(a.y), double(a.z) }; };
+    const TouchVertex& vertex = tables_.vertices[v];
+    const double newton = 1 / double(all_.per_newton);
+    const auto units = [&](std::size_t i)
+    { return newton * static_cast<double>(static_cast<std::int64_t>(sums[6 * v + i])); };
+    const Vector force{ units(0), units(1), units(2) },
+        turn = double(all_.edge) * Vector{ units(3), units(4), units(5) };
+    const Vector tangent[2] = { { double(vertex.tangent[0]), double(vertex.tangent[1]), double(vertex.tangent[2]) },
+                                { double(vertex.tangent[3]), double(vertex.tangent[4]), double(vertex.tangent[5]) } };
+    const Vector along =
+        physics::normal_forces(turn, vector(duals[2 * v]), vector(duals[2 * v + 1]), tangent,
+                               Vector{ 1 / model_.spacing[0], 1 / model_.spacing[1], 1 / model_.spacing[2] });
+    const float4& c = tables_.coordinates[v];
+    const physics::SideWeights<double> weights(double(c.x), double(c.y), double(c.z));
+    for (int b = 0; b < 8; ++b)
+    {
+      const Vector part = physics::surface_node_force(weights, b, force, along, vector(normals[v]));
+      auto& of_node = forces[model_.voxel_nodes[tables_.voxel[v]][b]];
+      of_node[0] += part.x;
+      of_node[1] += part.y;
+      of_node[2] += part.z;
+    }
+  }
+}
+
+}  // namespace cuda
+}  // namespace frontalis
