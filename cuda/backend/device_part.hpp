@@ -18,7 +18,8 @@ namespace cuda
 struct VoxelCut;
 
 /// The part of the GPU backend that serves an effect with points that are bound to voxels and push them; host backends
-/// have NodePart for this. Patches find the forces within their steps; for strips, kernels find them before each step.
+/// have NodePart for this. In strips, kernels find the forces before each step. Patches find them within their steps,
+/// unless the part has kernels for patches as well.
 class DevicePart : public EffectPart
 {
 public:
@@ -34,6 +35,8 @@ public:
   /// followed by ContactArguments::ways. Empty: there are no bodies.
   virtual std::vector<float> motion(const std::vector<std::vector<RigidTransform>>& /*bones*/) const { return {}; }
 
+  /// Whether the functions for strips are used for patches as well. Each step is then a launch of its own.
+  virtual bool has_kernels() const { return false; }
   // Functions for strips:
   /// Finds the forces on points at the start of a step.
   virtual void find_pushes(const StepArguments& g, int step, cudaStream_t stream) const = 0;
@@ -56,9 +59,6 @@ public:
 std::vector<std::unique_ptr<DevicePart>> device_parts(const Model& model, const Discretisation& discretisation,
                                                       const VoxelCut& cut,
                                                       const std::vector<std::uint32_t>& device_node);
-
-/// Whether the model must be cut into strips, because it has an effect that patches do not compute.
-bool needs_strips(const Model& model);
 
 /// Shared memory and threads that parts need in a block of patches.
 struct PartRoom

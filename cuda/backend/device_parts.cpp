@@ -23,8 +23,6 @@ std::vector<std::unique_ptr<DevicePart>> device_parts(const Model& model, const 
   return parts;
 }
 
-bool needs_strips(const Model& model) { return !model.self_contacts.empty(); }
-
 PartRoom room_for_parts(const Model& model, const VoxelPatches& patches, const std::vector<std::uint32_t>& device_node)
 {
   PartRoom all;

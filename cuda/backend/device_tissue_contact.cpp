@@ -62,17 +62,13 @@ TouchTables::TouchTables(const Model& model, const Discretisation& discretisatio
     const TouchingSurface::Vertex& from = surface.vertices[v];
     const double friction = model.self_contacts[from.contact].friction;
     TouchVertex to{};
-    const auto put = [](const TouchingSurface::Vector& a, float* at)
-    {
-      at[0] = static_cast<float>(a.x);
-      at[1] = static_cast<float>(a.y);
-      at[2] = static_cast<float>(a.z);
+    const auto word = [](const TouchingSurface::Vector& a, float last) {
+      return float4{ static_cast<float>(a.x), static_cast<float>(a.y), static_cast<float>(a.z), last };
     };
-    put(from.rest, to.rest);
-    put(from.tangent[0], to.tangent);
-    put(from.tangent[1], to.tangent + 3);
+    to.rest = word(from.rest, host.per_area()[v]);
+    to.tangent[0] = word(from.tangent[0], 0);
+    to.tangent[1] = word(from.tangent[1], 0);
     to.stiffness = host.stiffness()[v];
-    to.per_area = host.per_area()[v];
     to.overlap = host.overlap()[v];
     to.friction = static_cast<float>(friction);
     to.contact = from.contact;
@@ -132,7 +128,7 @@ DeviceTissueContact::DeviceTissueContact(const Model& model, const Discretisatio
   control_ = DeviceArray<TouchControl>(1);
   heads_ = DeviceArray<std::int32_t>(std::size_t(all_.bucket_mask) + 1);
   next_ = DeviceArray<std::int32_t>(tables_.triangles.size());
-  sums_ = DeviceArray<unsigned long long>(6 * count);
+  sums_ = DeviceArray<TouchSum>(count);
   stored_ = DeviceArray<float>(count);
   all_.bound = points_.view();
   all_.vertices = vertices_.data();
@@ -240,13 +236,13 @@ void DeviceTissueContact::add_energies(const std::vector<double> (&u)[3], const 
     using Vector = physics::Vec3<double>;
     const auto vector = [](const auto& a) { return Vector{ double(a.x), double(a.y), double(a.z) }; };
     const TouchVertex& vertex = tables_.vertices[v];
-    const double newton = 1 / double(all_.per_newton);
-    const auto units = [&](std::size_t i)
-    { return newton * static_cast<double>(static_cast<std::int64_t>(sums[6 * v + i])); };
-    const Vector force{ units(0), units(1), units(2) },
-        turn = double(all_.edge) * Vector{ units(3), units(4), units(5) };
-    const Vector tangent[2] = { { double(vertex.tangent[0]), double(vertex.tangent[1]), double(vertex.tangent[2]) },
-                                { double(vertex.tangent[3]), double(vertex.tangent[4]), double(vertex.tangent[5]) } };
+    const auto in_newton = [&](const unsigned long long(&units)[3])
+    {
+      const auto number = [&](std::size_t i) { return static_cast<double>(static_cast<std::int64_t>(units[i])); };
+      return (1 / double(all_.per_newton)) * Vector{ number(0), number(1), number(2) };
+    };
+    const Vector force = in_newton(sums[v].force), turn = double(all_.edge) * in_newton(sums[v].turn);
+    const Vector tangent[2] = { vector(vertex.tangent[0]), vector(vertex.tangent[1]) };
     const Vector along =
         physics::normal_forces(turn, vector(duals[2 * v]), vector(duals[2 * v + 1]), tangent,
                                Vector{ 1 / model_.spacing[0], 1 / model_.spacing[1], 1 / model_.spacing[2] });

@@ -35,6 +35,7 @@ public:
 
   bool idle() const override { return !runs_; }
   Effects effects() const override { return Effects::none; }
+  bool has_kernels() const override { return true; }
   void describe(StepArguments& /*g*/) const override {}
   void list_arrays(ArrayList& list) override;
   void run(EffectSet running) override;
@@ -59,7 +60,7 @@ private:
   DeviceArray<double> lost_;
   DeviceArray<TouchControl> control_;
   DeviceArray<std::int32_t> heads_, next_;
-  DeviceArray<unsigned long long> sums_;
+  DeviceArray<TouchSum> sums_;
   DeviceArray<float> stored_;
   std::vector<double> opened_ = std::vector<double>(1, 0);  // sum of lost_ when the account was opened [J]
 };

@@ -66,8 +66,6 @@ CutChoice choose_cut(const Model& model, Effects effects)
   cut.patch_bytes = bytes_for_patches();
   cut.patches = { processors, from_environment("FRONTALIS_CUDA_PATCHES",
                                                expected_turns(model, processors, cut.patch_bytes), 0, most_turns) };
-  if (needs_strips(model))
-    cut.patches.turns = 0;
   // All strips should run at the same time, with 10 % to spare, because a few that start later would double the time.
   const double warps = 0.9 * strip_blocks(effects) * (step_block / 32) * processors;
   cut.strips.rows = strip_rows(effects);

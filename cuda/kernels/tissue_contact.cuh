@@ -25,8 +25,7 @@ struct TouchView
 
   __device__ __forceinline__ Place rest_apart(std::int32_t v, std::int32_t w) const
   {
-    const float *const a = c.vertices[v].rest, *const b = c.vertices[w].rest;
-    return { a[0] - b[0], a[1] - b[1], a[2] - b[2] };
+    return place(c.vertices[v].rest) - place(c.vertices[w].rest);
   }
   __device__ __forceinline__ Place apart(std::int32_t v, std::int32_t w) const
   {
@@ -57,12 +56,6 @@ struct TouchView
   const TissueContactArguments& c;
 };
 
-__device__ __forceinline__ void tangents_of(const TouchVertex& vertex, Place (&tangent)[2])
-{
-  tangent[0] = { vertex.tangent[0], vertex.tangent[1], vertex.tangent[2] };
-  tangent[1] = { vertex.tangent[3], vertex.tangent[4], vertex.tangent[5] };
-}
-
 /// Places a vertex at the displacements u of device nodes, and clears its forces. Returns how far it has moved since
 /// the latest search [m].
 __device__ __forceinline__ float place_touching(const TissueContactArguments& c, std::uint32_t v, const float4* u)
@@ -70,8 +63,7 @@ __device__ __forceinline__ float place_touching(const TissueContactArguments& c,
   const float4 at = c.bound.coordinates[v];
   const uint4 low = c.bound.nodes[2 * v], high = c.bound.nodes[2 * v + 1];
   const std::uint32_t corner[8] = { low.x, low.y, low.z, low.w, high.x, high.y, high.z, high.w };
-  Place tangent[2];
-  tangents_of(c.vertices[v], tangent);
+  const Place tangent[2] = { place(c.vertices[v].tangent[0]), place(c.vertices[v].tangent[1]) };
   const auto vertex = physics::surface_vertex(physics::SideWeights<float>(at.x, at.y, at.z), tangent,
                                               Place{ c.inverse_spacing[0], c.inverse_spacing[1], c.inverse_spacing[2] },
                                               [&](int two, Place& first, Place& second)
@@ -85,17 +77,15 @@ __device__ __forceinline__ float place_touching(const TissueContactArguments& c,
   c.normal[v] = word(vertex.normal);
   c.dual[2 * v] = word(vertex.dual[0]);
   c.dual[2 * v + 1] = word(vertex.dual[1]);
-  for (int i = 0; i < 6; ++i)
-    c.sums[6 * std::size_t(v) + i] = 0;
+  c.sums[v] = TouchSum{};
   return norm(vertex.displacement - place(c.searched[v]));
 }
 
-/// Empties the buckets of the grid if triangles will be sorted in this step.
+/// Empties buckets of the grid before triangles are sorted.
 __device__ __forceinline__ void clear_grid(const TissueContactArguments& c, std::uint32_t first, std::uint32_t stride)
 {
-  if (!c.looks_only && c.control->next == TouchStage::sort)
-    for (std::uint32_t b = first; b <= c.bucket_mask; b += stride)
-      c.heads[b] = -1;
+  for (std::uint32_t b = first; b <= c.bucket_mask; b += stride)
+    c.heads[b] = -1;
 }
 
 struct GridCell
@@ -114,8 +104,7 @@ struct GridCell
 
 __device__ __forceinline__ Place place_of(const TissueContactArguments& c, std::int32_t v)
 {
-  const float* const rest = c.vertices[v].rest;
-  return Place{ rest[0], rest[1], rest[2] } + place(c.moved[v]);
+  return place(c.vertices[v].rest) + place(c.moved[v]);
 }
 
 /// Edge of the grid's cells [m]. A corner's distance from its triangle's centre has grown at most by twice the largest
@@ -168,7 +157,8 @@ __device__ __forceinline__ std::int32_t nearest_triangle(const TouchView& view, 
   return nearest;
 }
 
-/// Forms the pairs of a vertex: those that touch, and those with the nearest triangles on up to two surfaces.
+/// Forms the pairs of a vertex for the next step: those that touch, and those with the nearest triangles on up to two
+/// surfaces.
 static __device__ __noinline__ void search_pairs(const TissueContactArguments& c, std::uint32_t v)
 {
   const TouchView view{ c };
@@ -205,13 +195,15 @@ __device__ __forceinline__ void add_units(unsigned long long* to, long long unit
 template <bool rubs>
 __device__ __forceinline__ void touch_triangles(const TissueContactArguments& c, std::uint32_t v, float response)
 {
+  static_assert(touch_search::most_pairs == 2, "both pairs are loaded at once");
   const TouchView view{ c };
   const auto p = static_cast<std::int32_t>(v);
+  const TouchPair both[2] = { c.pairs[2 * std::size_t(v)], c.pairs[2 * std::size_t(v) + 1] };
   float stored = 0, lost = 0;
   std::int32_t first = -1;
   for (int k = 0; k < touch_search::most_pairs; ++k)
   {
-    TouchPair pair = c.pairs[2 * std::size_t(v) + k];
+    TouchPair pair = k == 0 ? both[0] : both[1];
     if (pair.triangle < 0)
       continue;
     physics::SurfaceTriangle<float> triangle;
@@ -227,7 +219,7 @@ __device__ __forceinline__ void touch_triangles(const TissueContactArguments& c,
     physics::TouchingPair<float> of{ vertex.stiffness, {}, {}, vertex.overlap, vertex.friction };
     for (int i = 0; i < 3; ++i)
     {
-      of.softer[i] = c.vertices[corners.vertex[i]].per_area / vertex.per_area;
+      of.softer[i] = c.vertices[corners.vertex[i]].rest.w / vertex.rest.w;
       of.inner[i] = corners.neighbour[i] < 0 ? 0.0F : 1.0F;
     }
     const float gap = foot.gap - of.overlap;
@@ -255,20 +247,20 @@ __device__ __forceinline__ void touch_triangles(const TissueContactArguments& c,
     const float per_moment = c.per_newton / c.edge;
     for (int i = 0; i < 3; ++i)
     {
-      unsigned long long* const to = c.sums + 6 * std::size_t(corners.vertex[i]);
-      const float on[6] = { c.per_newton * force.corner[i].x, c.per_newton * force.corner[i].y,
-                            c.per_newton * force.corner[i].z, per_moment * force.turn[i].x,
-                            per_moment * force.turn[i].y,     per_moment * force.turn[i].z };
+      TouchSum& to = c.sums[corners.vertex[i]];
+      const Place on = c.per_newton * force.corner[i], turn = per_moment * force.turn[i];
+      const long long units[3] = { __float2ll_rn(on.x), __float2ll_rn(on.y), __float2ll_rn(on.z) };
+      add_units(&to.turn[0], __float2ll_rn(turn.x));
+      add_units(&to.turn[1], __float2ll_rn(turn.y));
+      add_units(&to.turn[2], __float2ll_rn(turn.z));
       for (int axis = 0; axis < 3; ++axis)
       {
-        const long long units = __float2ll_rn(on[axis]);
-        add_units(to + axis, units);
-        add_units(to + 3 + axis, __float2ll_rn(on[3 + axis]));
-        sum[axis] -= units;
+        add_units(&to.force[axis], units[axis]);
+        sum[axis] -= units[axis];
       }
     }
     for (int axis = 0; axis < 3; ++axis)
-      add_units(c.sums + 6 * std::size_t(v) + axis, sum[axis]);
+      add_units(&c.sums[v].force[axis], sum[axis]);
   }
   if (rubs && lost != 0)
     c.lost[v] += double(lost);
@@ -298,36 +290,22 @@ __device__ __forceinline__ void choose_stage(const TissueContactArguments& c, fl
   control.next = far ? TouchStage::sort : TouchStage::hold;
 }
 
-/// Force of a vertex on its voxel's nodes.
-struct VertexPush
-{
-  Place force, along;  ///< on the vertex [N]; physics::normal_forces() [N]
-};
-__device__ __forceinline__ bool has_push(const TissueContactArguments& c, std::uint32_t v)
-{
-  const unsigned long long* const sum = c.sums + 6 * std::size_t(v);
-  return (sum[0] | sum[1] | sum[2] | sum[3] | sum[4] | sum[5]) != 0;
-}
-__device__ __forceinline__ VertexPush vertex_push(const TissueContactArguments& c, std::uint32_t v)
-{
-  const unsigned long long* const sum = c.sums + 6 * std::size_t(v);
-  const float newton = 1 / c.per_newton, moment = newton * c.edge;
-  const auto units = [&](int i) { return static_cast<float>(static_cast<long long>(sum[i])); };
-  const Place turn{ moment * units(3), moment * units(4), moment * units(5) };
-  Place tangent[2];
-  tangents_of(c.vertices[v], tangent);
-  return { { newton * units(0), newton * units(1), newton * units(2) },
-           physics::normal_forces(turn, place(c.dual[2 * v]), place(c.dual[2 * v + 1]), tangent,
-                                  Place{ c.inverse_spacing[0], c.inverse_spacing[1], c.inverse_spacing[2] }) };
-}
-
 /// Force of a vertex on corner b of its voxel [N].
-__device__ __forceinline__ Place corner_push(const TissueContactArguments& c, std::uint32_t v, int b)
+__device__ __forceinline__ Place corner_push(const TissueContactArguments& c, std::uint32_t v, std::uint32_t b)
 {
-  const float4 at = c.bound.coordinates[v];
-  const VertexPush push = vertex_push(c, v);
-  return physics::surface_node_force(physics::SideWeights<float>(at.x, at.y, at.z), b, push.force, push.along,
-                                     place(c.normal[v]));
+  const TouchSum sum = c.sums[v];
+  const float4 at = c.bound.coordinates[v], normal = c.normal[v], dual0 = c.dual[2 * v], dual1 = c.dual[2 * v + 1];
+  const Place tangent[2] = { place(c.vertices[v].tangent[0]), place(c.vertices[v].tangent[1]) };
+  const auto in_newton = [&](const unsigned long long(&units)[3])
+  {
+    return (1 / c.per_newton) * Place{ static_cast<float>(static_cast<long long>(units[0])),
+                                       static_cast<float>(static_cast<long long>(units[1])),
+                                       static_cast<float>(static_cast<long long>(units[2])) };
+  };
+  const Place along = physics::normal_forces(c.edge * in_newton(sum.turn), place(dual0), place(dual1), tangent,
+                                             Place{ c.inverse_spacing[0], c.inverse_spacing[1], c.inverse_spacing[2] });
+  return physics::surface_node_force(physics::SideWeights<float>(at.x, at.y, at.z), static_cast<int>(b),
+                                     in_newton(sum.force), along, place(normal));
 }
 
 }  // namespace cuda

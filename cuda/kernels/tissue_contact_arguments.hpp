@@ -8,14 +8,12 @@ namespace frontalis
 /// A vertex of a surface that may touch other parts of the tissue (TouchingSurface::Vertex).
 struct alignas(16) TouchVertex
 {
-  float rest[3];     ///< position at rest [m]
-  float stiffness;   ///< [N/m]
-  float tangent[6];  ///< two tangents at rest
-  float per_area;    ///< stiffness per area of the vertex [N/m3]
-  float overlap;     ///< gap at rest, not positive; the depth of contact is measured from it [m]
+  float4 rest;        ///< position at rest [m]; stiffness per area of the vertex [N/m3]
+  float4 tangent[2];  ///< tangents at rest
+  float stiffness;    ///< [N/m]
+  float overlap;      ///< gap at rest, not positive; the depth of contact is measured from it [m]
   float friction;
   std::int32_t contact, source;
-  std::int32_t unused;
 };
 
 /// See TouchingSurface::Triangle.
@@ -37,6 +35,12 @@ enum class TouchStage : std::uint32_t
   hold,   ///< nothing
   sort,   ///< sort triangles into cells
   search  ///< search near each vertex, in the step after `sort`
+};
+
+/// Force on a vertex and moment on its normal, in units of TissueContactArguments.
+struct alignas(16) TouchSum
+{
+  unsigned long long force[3], turn[3];
 };
 
 /// State of the search. Lengths that kernels compare with atomicMax are stored as bits of floats, which are not
@@ -79,9 +83,9 @@ struct TissueContactArguments
 
   // Values of the present step:
   float4* dual;  ///< two per vertex: physics::SurfaceVertex::dual
-  /// Six per vertex, force and moment on the normal, in units of force and units of force times `edge`. The sums of
-  /// whole numbers do not depend on the order, so that threads may add in any order, and reactions are exact opposites.
-  unsigned long long* sums;
+  /// Per vertex, in units of force and in units of force times `edge`. The sums of whole numbers do not depend on the
+  /// order, so that threads may add in any order, and reactions are exact opposites.
+  TouchSum* sums;
   float* stored;  ///< energy stored at each vertex [J]
 };
 

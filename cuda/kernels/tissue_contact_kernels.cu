@@ -12,20 +12,40 @@ namespace cuda
 // Small blocks spread a few thousand vertices over all multiprocessors.
 constexpr std::uint32_t touch_block = 64;
 
-__global__ void __launch_bounds__(touch_block) place_vertices(const TissueContactArguments c, const float4* u)
+// A kernel that runs after another one of this file may be launched before that one has ended (launch_after()). It
+// waits here until the other one has ended. GPUs before compute capability 9.0 never launch it early.
+__device__ __forceinline__ void wait_for_kernel_before()
 {
+#if __CUDA_ARCH__ >= 900
+  cudaGridDependencySynchronize();
+#endif
+}
+// Allows the next kernel to be launched.
+__device__ __forceinline__ void let_next_kernel_start()
+{
+#if __CUDA_ARCH__ >= 900
+  cudaTriggerProgrammaticLaunchCompletion();
+#endif
+}
+
+__global__ void __launch_bounds__(touch_block)
+    place_vertices(const __grid_constant__ TissueContactArguments c, const float4* u)
+{
+  let_next_kernel_start();
   const std::uint32_t v = blockIdx.x * touch_block + threadIdx.x;
-  clear_grid(c, v, gridDim.x * touch_block);
+  const TouchStage stage = c.looks_only ? TouchStage::hold : c.control->next;
   float moved = v < c.vertex_count ? place_touching(c, v, u) : 0;
   if (c.looks_only)
     return;
-  if (v == 0)
-    c.control->stage = c.control->next;
 #pragma unroll
   for (int apart = 1; apart < 32; apart *= 2)
     moved = fmaxf(moved, __shfl_xor_sync(0xffffffffu, moved, apart));
-  if (threadIdx.x % 32 == 0 && __float_as_uint(moved) > c.control->moved)
+  if (threadIdx.x % 32 == 0)
     atomicMax(&c.control->moved, __float_as_uint(moved));
+  if (v == 0)
+    c.control->stage = stage;
+  if (stage == TouchStage::sort)
+    clear_grid(c, v, gridDim.x * touch_block);
 }
 
 template <bool rubs>
@@ -33,18 +53,19 @@ __global__ void __launch_bounds__(touch_block)
     touch_surfaces(const __grid_constant__ TissueContactArguments c, float dt, float response)
 {
   const std::uint32_t v = blockIdx.x * touch_block + threadIdx.x;
+  wait_for_kernel_before();
+  let_next_kernel_start();
   const TouchStage stage = c.looks_only ? TouchStage::hold : c.control->stage;
+  if (v < c.vertex_count)
+    touch_triangles<rubs>(c, v, response);
   if (stage == TouchStage::sort)
   {
     const float cell = cell_edge(c);
     for (std::uint32_t t = v; t < c.triangle_count; t += gridDim.x * touch_block)
       sort_triangle(c, t, cell);
   }
-  if (v >= c.vertex_count)
-    return;
-  if (stage == TouchStage::search)
+  if (stage == TouchStage::search && v < c.vertex_count)
     search_pairs(c, v);
-  touch_triangles<rubs>(c, v, response);
   if (v == 0 && !c.looks_only)
     choose_stage(c, dt);
 }
@@ -57,20 +78,15 @@ __global__ void __launch_bounds__(touch_block) touch_springs(const TissueContact
   const Place moved = bound_displacement(c.bound.coordinates[v], c.bound.nodes[2 * v], c.bound.nodes[2 * v + 1], u);
   // A vertex has half of the stiffness, because both sides push; the stiffness counts twice, because both sides move.
   const float units = -4 * c.per_newton * c.vertices[v].stiffness;
-  unsigned long long* const sum = c.sums + 6 * std::size_t(v);
-  sum[0] = static_cast<unsigned long long>(__float2ll_rn(units * moved.x));
-  sum[1] = static_cast<unsigned long long>(__float2ll_rn(units * moved.y));
-  sum[2] = static_cast<unsigned long long>(__float2ll_rn(units * moved.z));
-  sum[3] = sum[4] = sum[5] = 0;
+  const auto in_units = [&](float x) { return static_cast<unsigned long long>(__float2ll_rn(units * x)); };
+  c.sums[v] = { { in_units(moved.x), in_units(moved.y), in_units(moved.z) }, { 0, 0, 0 } };
 }
 
 __global__ void __launch_bounds__(push_block)
     push_touching(const __grid_constant__ TissueContactArguments c, const PushTarget to)
 {
-  push_node(c.bound, to,
-            [&](std::uint32_t v, std::uint32_t b) {
-              return has_push(c, v) ? corner_push(c, v, static_cast<int>(b)) : Place{ 0, 0, 0 };
-            });
+  wait_for_kernel_before();
+  push_node(c.bound, to, [&](std::uint32_t v, std::uint32_t b) { return corner_push(c, v, b); });
 }
 
 namespace
@@ -81,6 +97,30 @@ std::uint32_t blocks(const TissueContactArguments& contact)
   return (contact.vertex_count + touch_block - 1) / touch_block;
 }
 
+// Launches a kernel that begins with wait_for_kernel_before().
+template <class... Parameters, class... Arguments>
+cudaError_t launch_after(void (*kernel)(Parameters...), std::uint32_t blocks, std::uint32_t threads,
+                         cudaStream_t stream, const Arguments&... arguments)
+{
+  static const bool early = []
+  {
+    int device = 0, major = 0;
+    cudaGetDevice(&device);
+    cudaDeviceGetAttribute(&major, cudaDevAttrComputeCapabilityMajor, device);
+    return major >= 9;
+  }();
+  cudaLaunchAttribute attribute{};
+  attribute.id = cudaLaunchAttributeProgrammaticStreamSerialization;
+  attribute.val.programmaticStreamSerializationAllowed = 1;
+  cudaLaunchConfig_t config{};
+  config.gridDim = blocks;
+  config.blockDim = threads;
+  config.stream = stream;
+  config.attrs = &attribute;
+  config.numAttrs = early ? 1 : 0;
+  return cudaLaunchKernelEx(&config, kernel, arguments...);
+}
+
 }  // namespace
 }  // namespace cuda
 
@@ -89,9 +129,10 @@ cudaError_t launch_touch(const TissueContactArguments& contact, const float4* u,
   const std::uint32_t blocks = cuda::blocks(contact);
   const auto response = static_cast<float>(physics::friction_response(dt));
   cuda::place_vertices<<<blocks, cuda::touch_block, 0, stream>>>(contact, u);
+  if (const cudaError_t status = cudaGetLastError(); status != cudaSuccess)
+    return status;
   const auto touch = contact.rubs ? cuda::touch_surfaces<true> : cuda::touch_surfaces<false>;
-  touch<<<blocks, cuda::touch_block, 0, stream>>>(contact, static_cast<float>(dt), response);
-  return cudaGetLastError();
+  return cuda::launch_after(touch, blocks, cuda::touch_block, stream, contact, static_cast<float>(dt), response);
 }
 
 cudaError_t launch_touch_springs(const TissueContactArguments& contact, const float4* u, cudaStream_t stream)
@@ -103,9 +144,8 @@ cudaError_t launch_touch_springs(const TissueContactArguments& contact, const fl
 cudaError_t launch_push_touching(const StepArguments& g, const TissueContactArguments& contact, float factor,
                                  float* const (&v)[3], cudaStream_t stream)
 {
-  cuda::push_touching<<<cuda::push_blocks(contact.bound), cuda::push_block, 0, stream>>>(
-      contact, cuda::push_target(g, factor, v));
-  return cudaGetLastError();
+  return cuda::launch_after(cuda::push_touching, cuda::push_blocks(contact.bound), cuda::push_block, stream, contact,
+                            cuda::push_target(g, factor, v));
 }
 
 }  // namespace frontalis

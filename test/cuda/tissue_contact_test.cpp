@@ -53,7 +53,7 @@ public:
     stored_.assign(count, 0);
     heads_.assign(std::size_t(tables_.sizes.bucket_mask) + 1, -1);
     next_.assign(tables_.triangles.size(), -1);
-    sums_.assign(6 * count, 0);
+    sums_.assign(count, {});
     control_ = tables_.rest;
     gpu = tables_.sizes;
     gpu.bound.coordinates = tables_.coordinates.data();
@@ -81,7 +81,7 @@ public:
   TwoWays(const TwoWays&) = delete;
   TwoWays& operator=(const TwoWays&) = delete;
 
-  // The order in which threads run is reversed if the triangles are `backwards`.
+  // The order in which threads run is reversed if they run `backwards`.
   void step(bool backwards)
   {
     on_host.assign(model_.nodes.size(), {});
@@ -102,25 +102,28 @@ public:
     std::vector<float4> u;
     for (std::size_t n = 0; n < model_.nodes.size(); ++n)
       u.push_back({ float(u_[0][n]), float(u_[1][n]), float(u_[2][n]), 0 });
-    clear_grid(gpu, 0, 1);
-    control_.stage = control_.next;
     for (std::uint32_t v = 0; v < gpu.vertex_count; ++v)
       atomicMax(&control_.moved, __float_as_uint(place_touching(gpu, v, u.data())));
-    const float cell = cell_edge(gpu);
-    for (std::uint32_t t = 0; control_.stage == TouchStage::sort && t < gpu.triangle_count; ++t)
-      sort_triangle(gpu, backwards ? gpu.triangle_count - 1 - t : t, cell);
-    searches += control_.stage == TouchStage::search ? 1 : 0;
+    control_.stage = control_.next;
+    const bool sorts = control_.stage == TouchStage::sort, finds = control_.stage == TouchStage::search;
+    if (sorts)
+      clear_grid(gpu, 0, 1);
+    const auto in_order = [&](std::uint32_t i, std::uint32_t count) { return backwards ? count - 1 - i : i; };
+    const auto response = float(physics::friction_response(dt));
     for (std::uint32_t i = 0; i < gpu.vertex_count; ++i)
-    {
-      const std::uint32_t v = backwards ? gpu.vertex_count - 1 - i : i;
-      if (control_.stage == TouchStage::search)
-        search_pairs(gpu, v);
-      const auto response = float(physics::friction_response(dt));
-      gpu.rubs ? touch_triangles<true>(gpu, v, response) : touch_triangles<false>(gpu, v, response);
-    }
+      if (gpu.rubs)
+        touch_triangles<true>(gpu, in_order(i, gpu.vertex_count), response);
+      else
+        touch_triangles<false>(gpu, in_order(i, gpu.vertex_count), response);
+    const float cell = cell_edge(gpu);
+    for (std::uint32_t t = 0; sorts && t < gpu.triangle_count; ++t)
+      sort_triangle(gpu, in_order(t, gpu.triangle_count), cell);
+    for (std::uint32_t i = 0; finds && i < gpu.vertex_count; ++i)
+      search_pairs(gpu, in_order(i, gpu.vertex_count));
+    searches += finds ? 1 : 0;
     choose_stage(gpu, float(dt));
     for (std::uint32_t v = 0; v < gpu.vertex_count; ++v)
-      for (int b = 0; b < 8 && has_push(gpu, v); ++b)
+      for (std::uint32_t b = 0; b < 8; ++b)
       {
         const Place part = corner_push(gpu, v, b);
         Vector& node = on_gpu[model_.voxel_nodes[tables_.voxel[v]][b]];
@@ -172,7 +175,7 @@ private:
   std::vector<double> lost_;
   std::vector<float> stored_;
   std::vector<std::int32_t> heads_, next_;
-  std::vector<unsigned long long> sums_;
+  std::vector<TouchSum> sums_;
   TouchControl control_{};
 };
 

@@ -4,8 +4,6 @@
 
 #include "frontalis/model/effects.hpp"
 
-#include <cstdlib>
-
 namespace frontalis
 {
 namespace
@@ -107,11 +105,7 @@ TEST_P(TissuesTouch, self_contact_is_switched_while_running)
   switch_off(without, EffectSet().with(Effect::self_contact));
   // The bound of the time step still includes contact.
   const double dt = 1e-5;
-  const auto solver = make(model, 2, true, dt);
-  // A GPU rounds otherwise in patches than in strips, into which it cuts models with self-contact.
-  ::setenv("FRONTALIS_CUDA_PATCHES", "0", 1);
-  const auto other = make(without, 2, true, dt);
-  ::unsetenv("FRONTALIS_CUDA_PATCHES");
+  const auto solver = make(model, 2, true, dt), other = make(without, 2, true, dt);
   solver->switch_effect(Effect::self_contact, false);
   for (Solver* const one : { solver.get(), other.get() })
     one->advance(4e-3, one->controls());
