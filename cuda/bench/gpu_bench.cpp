@@ -6,7 +6,7 @@
 #include "frontalis/study/step_time.hpp"
 #include "frontalis/study/voxel_model.hpp"
 #include "cuda/bench/shell_model.hpp"
-#include "cuda/bench/touching_blocks.hpp"
+#include "cuda/bench/self_contact_blocks.hpp"
 
 #include <algorithm>
 #include <cmath>

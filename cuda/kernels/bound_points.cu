@@ -7,12 +7,13 @@ namespace cuda
 
 __global__ void __launch_bounds__(push_block) push_nodes(const BoundPoints points, const PushTarget to)
 {
-  push_node(points, to,
-            [&](std::uint32_t p, std::uint32_t b)
-            {
-              const float4 at = points.coordinates[p], push = points.pushes[p];
-              return corner_weight(b, at.x, at.y, at.z) * physics::Vec3<float>{ push.x, push.y, push.z };
-            });
+  push_node(
+      points, to, [] {},
+      [&](std::uint32_t p, std::uint32_t b)
+      {
+        const float4 at = points.coordinates[p], push = points.pushes[p];
+        return corner_weight(b, at.x, at.y, at.z) * physics::Vec3<float>{ push.x, push.y, push.z };
+      });
 }
 
 }  // namespace cuda

@@ -21,38 +21,53 @@ struct PushTarget
 };
 
 /// Body of a kernel that pushes nodes. Each lane adds up the forces of_point(p, b) on corner b by the points p of one
-/// of a node's voxels. The sums of eight lanes are then added in a fixed order.
-template <class OfPoint>
-__device__ __forceinline__ void push_node(const BoundPoints& points, const PushTarget& to, const OfPoint& of_point)
+/// of a node's voxels. The sums of eight lanes are then added in a fixed order. wait() is called when constant data
+/// have been loaded.
+template <class Wait, class OfPoint>
+__device__ __forceinline__ void push_node(const BoundPoints& points, const PushTarget& to, const Wait& wait,
+                                          const OfPoint& of_point)
 {
   const std::uint32_t i = blockIdx.x * push_block + threadIdx.x, n = i / voxel_corners, b = i % voxel_corners;
-  const bool inside = n < points.bound_count;
+  const bool inside = n < points.bound_count, writes = inside && b == 0;
   const std::int32_t index = inside ? points.node_voxels[i] : -1;
-  physics::Vec3<float> sum{ 0, 0, 0 };
+  BoundVoxel voxel{ 0, 0, 0 };
   if (index >= 0)
+    voxel = points.voxels[index];
+  const std::uint32_t node = writes ? points.bound[n] : 0;
+  wait();
+  // The node's values are loaded here, so that they arrive while forces are found.
+  float gain = -1;
+  physics::Vec3<float> value{ 0, 0, 0 };
+  if (writes && to.v[0] == nullptr)
   {
-    const BoundVoxel voxel = points.voxels[index];
-    for (std::uint32_t p = voxel.first; p < voxel.end; ++p)
-      sum = sum + of_point(p, b);
+    const float4 force = to.forces[node];
+    value = { force.x, force.y, force.z };
   }
+  else if (writes)
+  {
+    gain = to.factor * to.masses[node].w;
+    value = { to.v[0][node], to.v[1][node], to.v[2][node] };
+  }
+  physics::Vec3<float> sum{ 0, 0, 0 };
+#pragma unroll 2
+  for (std::uint32_t p = voxel.first; p < voxel.end; ++p)
+    sum = sum + of_point(p, b);
 #pragma unroll
   for (int apart = 1; apart < int(voxel_corners); apart *= 2)
     sum = sum + physics::Vec3<float>{ __shfl_xor_sync(0xffffffffu, sum.x, apart),
                                       __shfl_xor_sync(0xffffffffu, sum.y, apart),
                                       __shfl_xor_sync(0xffffffffu, sum.z, apart) };
-  if (!inside || b > 0 || (sum.x == 0 && sum.y == 0 && sum.z == 0))
+  if (!writes || (sum.x == 0 && sum.y == 0 && sum.z == 0))
     return;
-  const std::uint32_t node = points.bound[n];
+  value = value + gain * sum;
   if (to.v[0] == nullptr)
   {
-    float4& force = to.forces[node];
-    force = make_float4(force.x - sum.x, force.y - sum.y, force.z - sum.z, 0);
+    to.forces[node] = make_float4(value.x, value.y, value.z, 0);
     return;
   }
-  const float gain = to.factor * to.masses[node].w;
-  to.v[0][node] += gain * sum.x;
-  to.v[1][node] += gain * sum.y;
-  to.v[2][node] += gain * sum.z;
+  to.v[0][node] = value.x;
+  to.v[1][node] = value.y;
+  to.v[2][node] = value.z;
 }
 
 /// Number of blocks of a kernel that pushes nodes.

@@ -57,13 +57,16 @@ struct TouchView
 };
 
 /// Places a vertex at the displacements u of device nodes, and clears its forces. Returns how far it has moved since
-/// the latest search [m].
-__device__ __forceinline__ float place_touching(const TissueContactArguments& c, std::uint32_t v, const float4* u)
+/// the latest search [m]. wait() is called when constant data have been loaded.
+template <class Wait>
+__device__ __forceinline__ float place_touching(const TissueContactArguments& c, std::uint32_t v, const float4* u,
+                                                const Wait& wait)
 {
   const float4 at = c.bound.coordinates[v];
   const uint4 low = c.bound.nodes[2 * v], high = c.bound.nodes[2 * v + 1];
   const std::uint32_t corner[8] = { low.x, low.y, low.z, low.w, high.x, high.y, high.z, high.w };
   const Place tangent[2] = { place(c.vertices[v].tangent[0]), place(c.vertices[v].tangent[1]) };
+  wait();
   const auto vertex = physics::surface_vertex(physics::SideWeights<float>(at.x, at.y, at.z), tangent,
                                               Place{ c.inverse_spacing[0], c.inverse_spacing[1], c.inverse_spacing[2] },
                                               [&](int two, Place& first, Place& second)
@@ -191,14 +194,17 @@ __device__ __forceinline__ void add_units(unsigned long long* to, long long unit
   atomicAdd(to, static_cast<unsigned long long>(units));
 }
 
-/// Adds the forces of a vertex's pairs to the sums of the vertices. `response`: physics::friction_response().
-template <bool rubs>
-__device__ __forceinline__ void touch_triangles(const TissueContactArguments& c, std::uint32_t v, float response)
+/// Adds the forces of a vertex's pairs to the sums of the vertices. `response`: physics::friction_response(). wait() is
+/// called when the pairs have been loaded.
+template <bool rubs, class Wait>
+__device__ __forceinline__ void touch_triangles(const TissueContactArguments& c, std::uint32_t v, float response,
+                                                const Wait& wait)
 {
   static_assert(touch_search::most_pairs == 2, "both pairs are loaded at once");
   const TouchView view{ c };
   const auto p = static_cast<std::int32_t>(v);
   const TouchPair both[2] = { c.pairs[2 * std::size_t(v)], c.pairs[2 * std::size_t(v) + 1] };
+  wait();
   float stored = 0, lost = 0;
   std::int32_t first = -1;
   for (int k = 0; k < touch_search::most_pairs; ++k)

@@ -12,8 +12,8 @@ namespace cuda
 // Small blocks spread a few thousand vertices over all multiprocessors.
 constexpr std::uint32_t touch_block = 64;
 
-// A kernel that runs after another one of this file may be launched before that one has ended (launch_after()). It
-// waits here until the other one has ended. GPUs before compute capability 9.0 never launch it early.
+// The kernels of this file may be launched before the kernel before them has ended (launch_after()). They wait here
+// until it has ended. GPUs before compute capability 9.0 never launch it early.
 __device__ __forceinline__ void wait_for_kernel_before()
 {
 #if __CUDA_ARCH__ >= 900
@@ -34,7 +34,11 @@ __global__ void __launch_bounds__(touch_block)
   let_next_kernel_start();
   const std::uint32_t v = blockIdx.x * touch_block + threadIdx.x;
   const TouchStage stage = c.looks_only ? TouchStage::hold : c.control->next;
-  float moved = v < c.vertex_count ? place_touching(c, v, u) : 0;
+  float moved = 0;
+  if (v < c.vertex_count)
+    moved = place_touching(c, v, u, wait_for_kernel_before);
+  else
+    wait_for_kernel_before();
   if (c.looks_only)
     return;
 #pragma unroll
@@ -53,11 +57,18 @@ __global__ void __launch_bounds__(touch_block)
     touch_surfaces(const __grid_constant__ TissueContactArguments c, float dt, float response)
 {
   const std::uint32_t v = blockIdx.x * touch_block + threadIdx.x;
-  wait_for_kernel_before();
   let_next_kernel_start();
-  const TouchStage stage = c.looks_only ? TouchStage::hold : c.control->stage;
+  TouchStage stage = TouchStage::hold;
+  const auto wait = [&]
+  {
+    wait_for_kernel_before();
+    if (!c.looks_only)
+      stage = c.control->stage;
+  };
   if (v < c.vertex_count)
-    touch_triangles<rubs>(c, v, response);
+    touch_triangles<rubs>(c, v, response, wait);
+  else
+    wait();
   if (stage == TouchStage::sort)
   {
     const float cell = cell_edge(c);
@@ -85,8 +96,8 @@ __global__ void __launch_bounds__(touch_block) touch_springs(const TissueContact
 __global__ void __launch_bounds__(push_block)
     push_touching(const __grid_constant__ TissueContactArguments c, const PushTarget to)
 {
-  wait_for_kernel_before();
-  push_node(c.bound, to, [&](std::uint32_t v, std::uint32_t b) { return corner_push(c, v, b); });
+  push_node(c.bound, to, wait_for_kernel_before,
+            [&](std::uint32_t v, std::uint32_t b) { return corner_push(c, v, b); });
 }
 
 namespace
@@ -128,8 +139,8 @@ cudaError_t launch_touch(const TissueContactArguments& contact, const float4* u,
 {
   const std::uint32_t blocks = cuda::blocks(contact);
   const auto response = static_cast<float>(physics::friction_response(dt));
-  cuda::place_vertices<<<blocks, cuda::touch_block, 0, stream>>>(contact, u);
-  if (const cudaError_t status = cudaGetLastError(); status != cudaSuccess)
+  if (const auto status = cuda::launch_after(cuda::place_vertices, blocks, cuda::touch_block, stream, contact, u);
+      status != cudaSuccess)
     return status;
   const auto touch = contact.rubs ? cuda::touch_surfaces<true> : cuda::touch_surfaces<false>;
   return cuda::launch_after(touch, blocks, cuda::touch_block, stream, contact, static_cast<float>(dt), response);

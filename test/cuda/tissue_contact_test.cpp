@@ -102,8 +102,9 @@ public:
     std::vector<float4> u;
     for (std::size_t n = 0; n < model_.nodes.size(); ++n)
       u.push_back({ float(u_[0][n]), float(u_[1][n]), float(u_[2][n]), 0 });
+    const auto no_wait = [] {};
     for (std::uint32_t v = 0; v < gpu.vertex_count; ++v)
-      atomicMax(&control_.moved, __float_as_uint(place_touching(gpu, v, u.data())));
+      atomicMax(&control_.moved, __float_as_uint(place_touching(gpu, v, u.data(), no_wait)));
     control_.stage = control_.next;
     const bool sorts = control_.stage == TouchStage::sort, finds = control_.stage == TouchStage::search;
     if (sorts)
@@ -112,9 +113,9 @@ public:
     const auto response = float(physics::friction_response(dt));
     for (std::uint32_t i = 0; i < gpu.vertex_count; ++i)
       if (gpu.rubs)
-        touch_triangles<true>(gpu, in_order(i, gpu.vertex_count), response);
+        touch_triangles<true>(gpu, in_order(i, gpu.vertex_count), response, no_wait);
       else
-        touch_triangles<false>(gpu, in_order(i, gpu.vertex_count), response);
+        touch_triangles<false>(gpu, in_order(i, gpu.vertex_count), response, no_wait);
     const float cell = cell_edge(gpu);
     for (std::uint32_t t = 0; sorts && t < gpu.triangle_count; ++t)
       sort_triangle(gpu, in_order(t, gpu.triangle_count), cell);

@@ -1,4 +1,4 @@
-#include "cuda/bench/touching_blocks.hpp"
+#include "cuda/bench/self_contact_blocks.hpp"
 
 #include <algorithm>
 
