@@ -2,27 +2,12 @@
 
 #include "cuda/backend/device_bound_points.hpp"
 #include "cuda/backend/device_part.hpp"
-#include "cuda/kernels/tissue_contact_arguments.hpp"
-#include "solver/contact/tissue_contact.hpp"
+#include "cuda/backend/tissue_contact_tables.hpp"
 
 namespace frontalis
 {
 namespace cuda
 {
-
-/// The constant arrays of contact of tissue with itself, on the host.
-struct TouchTables
-{
-  TouchTables(const Model& model, const Discretisation& discretisation);
-
-  std::vector<TouchVertex> vertices;
-  std::vector<std::uint32_t> voxel;  ///< of each vertex
-  std::vector<float4> coordinates;   ///< in the voxel
-  std::vector<TouchTriangle> triangles;
-  std::vector<std::int32_t> joined_begin, joined_sources;
-  TouchControl rest{};             ///< TissueContactArguments::control at rest
-  TissueContactArguments sizes{};  ///< numbers only; pointers are null
-};
 
 /// Contact of tissue with itself in device memory. Kernels place the vertices before each step, find the forces of the
 /// pairs, and change the velocities of nodes. The search for pairs runs in the same kernels, in two steps, when a
@@ -33,7 +18,7 @@ public:
   DeviceTissueContact(const Model& model, const Discretisation& discretisation,
                       const std::vector<std::uint32_t>& device_node);
 
-  bool idle() const override { return !runs_; }
+  bool idle() const override { return !runs_ || tables_.vertices.empty(); }
   Effects effects() const override { return Effects::none; }
   bool has_kernels() const override { return true; }
   void describe(StepArguments& /*g*/) const override {}

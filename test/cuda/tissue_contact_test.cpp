@@ -3,7 +3,7 @@
 
 #if __has_include(<cuda_runtime.h>) && defined(__x86_64__)
 
-#include "cuda/backend/device_tissue_contact.hpp"
+#include "cuda/backend/tissue_contact_tables.hpp"
 #include "solver/energy/energy_ledger_keeper.hpp"
 #include "solver/tissues_touch.hpp"
 
