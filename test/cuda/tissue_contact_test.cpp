@@ -229,10 +229,10 @@ TEST(TissueContactOfTheGpu, IsThatOfTheHost)
     EXPECT_GT(touching, steps / 3);
     EXPECT_GT(contact.searches, 5);
     EXPECT_GT(most, 1e-3);
-    EXPECT_LT(worst, 2e-3 * most) << friction;
+    EXPECT_LT(worst, 1e-5 * most) << friction;
     EXPECT_LT(unbalanced, 1e-5 * most) << friction;
     EXPECT_EQ(contact.lost_on_host() > 0, friction > 0);
-    EXPECT_NEAR(contact.lost_on_gpu(), contact.lost_on_host(), 2e-3 * contact.lost_on_host());
+    EXPECT_NEAR(contact.lost_on_gpu(), contact.lost_on_host(), 1e-4 * contact.lost_on_host());
   }
 }
 
