@@ -13,7 +13,7 @@ namespace cuda
 constexpr std::uint32_t touch_block = 64;
 
 // The kernels of this file may be launched before the kernel before them has ended (launch_after()). They wait here
-// until it has ended. GPUs before compute capability 9.0 never launch it early.
+// until it has ended. GPUs before compute capability 9.0 never launch them early.
 __device__ __forceinline__ void wait_for_kernel_before()
 {
 #if __CUDA_ARCH__ >= 900
@@ -33,6 +33,7 @@ __global__ void __launch_bounds__(touch_block)
 {
   let_next_kernel_start();
   const std::uint32_t v = blockIdx.x * touch_block + threadIdx.x;
+  // The control was written before the latest step, which has begun after that.
   const TouchStage stage = c.looks_only ? TouchStage::hold : c.control->next;
   float moved = 0;
   if (v < c.vertex_count)
