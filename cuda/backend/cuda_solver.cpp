@@ -250,9 +250,6 @@ std::unique_ptr<Solver> make_cuda_solver(std::shared_ptr<const Model> model, con
   if (model->muscles.size() > most_muscles)
     throw BackendUnavailable(
         fmt::format("backend cuda: {} muscles; allowed are {}", model->muscles.size(), most_muscles));
-  if (!model->self_contacts.empty())
-    throw BackendUnavailable(
-        "backend cuda: the model has contact of tissue with itself, which is computed on the CPU alone so far");
   if (!model->attached.empty() || !model->tissue_centre.empty())
     throw BackendUnavailable("backend cuda: the model has boundary: true, which is computed on the CPU alone so far");
   if (!model->joints.empty())

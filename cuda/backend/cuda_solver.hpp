@@ -56,8 +56,6 @@ private:
   void stage(const StepPlan& plan, const std::vector<float>& relaxation, PlanSlot& slot, StepArguments& g);
   void step(StepArguments& g, int begin, int end);
   void do_steps(const StepPlan& plan, StepArguments& g, int begin, int end);
-  /// Adds `factor` times the accelerations by forces on the points of `part` to `v`, as launch_push_nodes() does.
-  void push(const StepArguments& g, const DevicePart& part, float factor, float* const (&v)[3]) const;
   void rest();
   /// `springs`: use the largest stiffness of contact and shells, even while they are switched off.
   void queue_forces(float4* at, const float* activation, float4* out, bool springs = false);

@@ -106,19 +106,17 @@ void CudaSolver::step(StepArguments& g, int begin, int end)
   present_ = (present_ + end - begin) & 1;
 }
 
-void CudaSolver::push(const StepArguments& g, const DevicePart& part, float factor, float* const (&v)[3]) const
-{
-  require(launch_push_nodes(g, part.points(), factor, v, stream_), "pushing nodes");
-}
-
-// Makes all steps in one launch if the host has nothing to do between them, else in one launch per step. In strips the
-// forces on points change the velocities before each step.
+// Makes all steps in one launch if the host has nothing to do between them, else in one launch per step. The forces of
+// parts that have kernels of their own change the velocities before each step.
 void CudaSolver::do_steps(const StepPlan& plan, StepArguments& g, int begin, int end)
 {
-  if (launch_.patches && !account_ && !device_.loads().follow())
-    return step(g, begin, end);
   const auto running = device_.running_parts();
-  const auto pushing = launch_.patches ? std::vector<DevicePart*>() : running;
+  std::vector<DevicePart*> pushing;
+  for (DevicePart* const part : running)
+    if (!launch_.patches || part->has_kernels())
+      pushing.push_back(part);
+  if (launch_.patches && !account_ && !device_.loads().follow() && pushing.empty())
+    return step(g, begin, end);
   for (int s = begin; s < end; ++s)
   {
     device_.loads().update(u_[present_].data(), stream_);
@@ -128,13 +126,13 @@ void CudaSolver::do_steps(const StepPlan& plan, StepArguments& g, int begin, int
     for (const DevicePart* const part : pushing)
     {
       part->find_pushes(g, s, stream_);
-      push(g, *part, g.gain / g.keep, g.v);
+      part->push(g, g.gain / g.keep, g.v, stream_);
     }
     step(g, s, s + 1);
     if (!account_)
       continue;
     for (const DevicePart* const part : pushing)
-      push(g, *part, -g.gain / g.keep, g.velocity_before);
+      part->push(g, -g.gain / g.keep, g.velocity_before, stream_);
     account_->after_step(g, conditions_.damping, s, stream_);
     if (running.empty())
       continue;
@@ -226,14 +224,13 @@ void CudaSolver::queue_forces(float4* at, const float* activation, float4* out, 
   step(g, 0, 1);
   launch_ = launch;
   present_ = present;
-  if (!springs || launch_.patches)
-    return;
   float* const none[3] = { nullptr, nullptr, nullptr };
   for (const auto& part : device_.parts())
-  {
-    part->find_pushes(g, 0, stream_);
-    push(g, *part, 0, none);
-  }
+    if (springs && (!launch_.patches || part->has_kernels()))
+    {
+      part->find_pushes(g, 0, stream_);
+      part->push(g, 0, none, stream_);
+    }
 }
 
 void CudaSolver::internal_forces(const NodalVectors* displacements, NodalVectors& out)

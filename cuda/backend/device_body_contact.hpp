@@ -28,7 +28,10 @@ public:
   void run(EffectSet running) override;
   void reset() override;
   void find_pushes(const StepArguments& g, int step, cudaStream_t stream) const override;
-  BoundPoints points() const override { return bound_.view(); }
+  void push(const StepArguments& g, float factor, float* const (&v)[3], cudaStream_t stream) const override
+  {
+    bound_.push(g, factor, v, stream);
+  }
   void follow(const ConstraintStep& step) override;
   std::vector<Reaction> reactions() const override { return host_.reactions(); }
   std::int64_t lost_points() const override;

@@ -19,6 +19,11 @@ public:
                     const std::vector<std::uint32_t>& device_node);
 
   BoundPoints view() const;
+  /// Passes the forces on points on to nodes (launch_push_nodes()).
+  void push(const StepArguments& g, float factor, float* const (&v)[3], cudaStream_t stream) const
+  {
+    require(launch_push_nodes(g, view(), factor, v, stream), "pushing nodes");
+  }
   std::size_t bytes() const;
 
 private:

@@ -18,7 +18,8 @@ namespace cuda
 struct VoxelCut;
 
 /// The part of the GPU backend that serves an effect with points that are bound to voxels and push them; host backends
-/// have NodePart for this. Patches find the forces within their steps; for strips, kernels find them before each step.
+/// have NodePart for this. In strips, kernels find the forces before each step. Patches find them within their steps,
+/// unless the part has kernels for patches as well.
 class DevicePart : public EffectPart
 {
 public:
@@ -34,10 +35,13 @@ public:
   /// followed by ContactArguments::ways. Empty: there are no bodies.
   virtual std::vector<float> motion(const std::vector<std::vector<RigidTransform>>& /*bones*/) const { return {}; }
 
+  /// Whether the functions for strips are used for patches as well. Each step is then a launch of its own.
+  virtual bool has_kernels() const { return false; }
   // Functions for strips:
-  /// Finds the forces on points at the start of a step and stores them in points().
+  /// Finds the forces on points at the start of a step.
   virtual void find_pushes(const StepArguments& g, int step, cudaStream_t stream) const = 0;
-  virtual BoundPoints points() const = 0;
+  /// Passes the forces of find_pushes() on to nodes, as launch_push_nodes() does.
+  virtual void push(const StepArguments& g, float factor, float* const (&v)[3], cudaStream_t stream) const = 0;
 
   // Functions that need an idle stream:
   /// Passes the latest step on to the host's account. Called after each step if energies are requested.

@@ -1,5 +1,6 @@
 #include "cuda/backend/device_body_contact.hpp"
 #include "cuda/backend/device_shell.hpp"
+#include "cuda/backend/device_tissue_contact.hpp"
 
 #include <algorithm>
 
@@ -17,6 +18,8 @@ std::vector<std::unique_ptr<DevicePart>> device_parts(const Model& model, const 
     parts.push_back(std::make_unique<DeviceBodyContact>(model, discretisation, cut, device_node));
   if (!model.shells.empty())
     parts.push_back(std::make_unique<DeviceShell>(model, cut, device_node));
+  if (!model.self_contacts.empty())
+    parts.push_back(std::make_unique<DeviceTissueContact>(model, discretisation, device_node));
   return parts;
 }
 

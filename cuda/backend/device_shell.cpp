@@ -244,7 +244,7 @@ void DeviceShell::list_arrays(ArrayList& list)
 void DeviceShell::find_pushes(const StepArguments& g, int /*step*/, cudaStream_t stream) const
 {
   const auto count = static_cast<std::uint32_t>(mesh_.triangles.size());
-  require(launch_shell_forces({ words_.data(), count, g.shell.spring }, { sums_.data(), terms_.data() }, points(),
+  require(launch_shell_forces({ words_.data(), count, g.shell.spring }, { sums_.data(), terms_.data() }, points_.view(),
                               g.u[g.first], moved_.data(), forces_.data(), stream),
           "finding forces of shells");
 }

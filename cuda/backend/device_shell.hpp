@@ -48,7 +48,10 @@ public:
   void run(EffectSet running) override { runs_ = running.has(Effect::shell); }
   void reset() override {}
   void find_pushes(const StepArguments& g, int step, cudaStream_t stream) const override;
-  BoundPoints points() const override { return points_.view(); }
+  void push(const StepArguments& g, float factor, float* const (&v)[3], cudaStream_t stream) const override
+  {
+    points_.push(g, factor, v, stream);
+  }
   void add_energies(const std::vector<double> (&u)[3], const std::vector<RigidTransform>& bones, bool open,
                     Vectors& forces, EnergyLedger& ledger) override;
 

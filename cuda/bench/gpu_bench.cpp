@@ -6,6 +6,7 @@
 #include "frontalis/study/step_time.hpp"
 #include "frontalis/study/voxel_model.hpp"
 #include "cuda/bench/shell_model.hpp"
+#include "cuda/bench/self_contact_blocks.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -26,6 +27,7 @@ struct Scene
   std::string name;
   std::function<Model()> make;
   int steps;
+  bool touches = false;  // whether the motion begins with touching_start()
 };
 
 // Activations that rise linearly to `wanted` within 0.3 s, as in the published set-up.
@@ -133,6 +135,8 @@ void bench(const Scene& scene, DenseRates& dense)
   const double still = model->muscles.empty() ? 0 : seconds_per_step(*solver, controls, scene.steps);
   solver->reset();
   controls.activation.assign(model->muscles.size(), 0.75f);
+  if (scene.touches)
+    solver->set_displacements(touching_start(*model));
   const double warm_up = 256 * solver->time_step();
   solver->advance(warm_up, ramped(controls, warm_up));
   const double step = seconds_per_step(*solver, controls, scene.steps);
@@ -142,9 +146,9 @@ void bench(const Scene& scene, DenseRates& dense)
       "%s\n",
       scene.name.c_str(), voxels, 1e6 * step, voxels / step * 1e-9,
       static_cast<double>(free_before - free_after) / voxels, built, solver->description().c_str());
-  if (model->skin.vertices.empty())
+  if (scene.name.rfind("block_", 0) == 0)
     dense.emplace_back(scene.name, voxels / step);
-  else
+  if (!model->skin.vertices.empty())
   {
     for (const auto& [name, rate] : dense)
       std::printf("%-14s %.2f of the rate of %s\n", "", voxels / step / rate, name.c_str());
@@ -163,7 +167,16 @@ void bench(const Scene& scene, DenseRates& dense)
 std::vector<Scene> scenes()
 {
   const auto shell = [](double voxel) { return [voxel] { return shell_model({ voxel, 11000, 5e6 }); }; };
-  return { { "block_4k", [] { return dense_block(16, 16, 16); }, 20000 },
+  const auto blocks = [](std::int32_t height, bool contact, double friction)
+  { return [=] { return touching_blocks(height, contact, friction); }; };
+  return { { "thin_plain", blocks(2, false, 0), 20000 },
+           { "thin_touch", blocks(2, true, 0), 20000, true },
+           { "thin_rub", blocks(2, true, 0.3), 20000, true },
+           { "blocks_plain", blocks(33, false, 0), 10000 },
+           { "blocks_touch", blocks(33, true, 0), 10000, true },
+           { "high_plain", blocks(400, false, 0), 2000 },
+           { "high_touch", blocks(400, true, 0), 2000, true },
+           { "block_4k", [] { return dense_block(16, 16, 16); }, 20000 },
            { "block_1m", [] { return dense_block(102, 102, 102); }, 2000 },
            { "block_2m", [] { return dense_block(126, 126, 126); }, 2000 },
            { "block_16m", [] { return dense_block(252, 252, 252); }, 1000 },

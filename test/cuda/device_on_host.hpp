@@ -2,6 +2,7 @@
 
 #include <cuda_runtime.h>
 
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 
@@ -19,4 +20,27 @@ static inline float __uint_as_float(std::uint32_t bits)
   float x = 0;
   std::memcpy(&x, &bits, sizeof x);
   return x;
+}
+static inline long long __float2ll_rn(float x) { return llrintf(x); }
+// One thread runs at a time.
+template <class T>
+static inline T atomicAdd(T* at, T value)
+{
+  const T old = *at;
+  *at = old + value;
+  return old;
+}
+template <class T>
+static inline T atomicMax(T* at, T value)
+{
+  const T old = *at;
+  *at = old < value ? value : old;
+  return old;
+}
+template <class T>
+static inline T atomicExch(T* at, T value)
+{
+  const T old = *at;
+  *at = value;
+  return old;
 }

@@ -157,7 +157,7 @@ TEST_P(TissuesTouch, the_time_step_is_that_of_a_model_in_contact)
   }
 }
 
-FRONTALIS_HOST_BACKENDS(TissuesTouch);
+FRONTALIS_EVERY_BACKEND(TissuesTouch);
 
 }  // namespace
 }  // namespace frontalis

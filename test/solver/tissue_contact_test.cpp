@@ -295,7 +295,7 @@ TEST_P(TissuesTouch, bending_alone_is_no_contact)
   }
 }
 
-FRONTALIS_HOST_BACKENDS(TissuesTouch);
+FRONTALIS_EVERY_BACKEND(TissuesTouch);
 
 }  // namespace
 }  // namespace frontalis

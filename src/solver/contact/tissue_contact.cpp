@@ -15,16 +15,9 @@ namespace
 
 using Vector = physics::Vec3<double>;
 
-// A vertex and a triangle form a pair up to the first distance in front of the triangle and up to the second depth
-// behind it, both in shortest voxel edges.
-constexpr double reach_share = 0.5;
-constexpr double deepest_held = 1;
 // A vertex may be behind a triangle without touching it, beyond its rim or because the two do not face each other. The
 // pair is checked again when the vertex has moved by this length, in shortest voxel edges.
 constexpr double patience = 0.02;
-
-// Fraction of the reach by which vertices may move before the search is repeated.
-constexpr double renewal_share = 0.8;
 
 // The range of blocks that a thread processes.
 std::pair<std::int32_t, std::int32_t> part_of(std::size_t blocks, const NodeShare& share)
@@ -41,7 +34,7 @@ TissueContact<Real>::TissueContact(const Model& model, const Discretisation& dis
     : model_(model),
       kernels_(kernels),
       surface_(model),
-      reach_(reach_share * surface_.edge),
+      reach_(touch_search::reach * surface_.edge),
       nodes_(model, surface_.binding())
 {
   if (surface_.vertices.empty())
@@ -221,7 +214,7 @@ void TissueContact<Real>::before_step(const NodeShare& share, const Real* const 
     if (stage == Stage::search)
     {
       next_.stage = Stage::collect;
-      next_.renewal = way + renewal_share * reach_;
+      next_.renewal = way + touch_search::renewal_share * reach_;
     }
     if (stage == Stage::collect)
       next_.stage = Stage::hold;
@@ -243,8 +236,8 @@ void TissueContact<Real>::touch(Arena& arena, double way, double dt, std::int32_
 {
   kernels_.touch({ arena.pair_vertices.data(), arena.pairs.data(), arena.forces.data(), arena.due.data(),
                    arena.touches.data(), arena.moved, way, static_cast<Real>(physics::friction_response(dt)),
-                   static_cast<Real>(deepest_held * surface_.edge), static_cast<Real>(patience * surface_.edge), rubs_,
-                   go_on, &arena },
+                   static_cast<Real>(touch_search::deepest_held * surface_.edge),
+                   static_cast<Real>(patience * surface_.edge), rubs_, go_on, &arena },
                  first, last);
 }
 

@@ -46,12 +46,18 @@ public:
   void add_energies(const Real* const u[3], const std::vector<RigidTransform>& bones, bool open,
                     std::vector<std::array<double, 3>>& forces, EnergyLedger& ledger) override;
 
+  const TouchingSurface& surface() const { return surface_; }
+  // One value per vertex of the surface:
+  const std::vector<float>& stiffness() const { return stiffness_; }  ///< [N/m]
+  const std::vector<float>& per_area() const { return per_area_; }    ///< the same per area of the vertex [N/m3]
+  const std::vector<float>& overlap() const { return overlap_; }      ///< gap at rest, not positive [m]
+
 private:
   using Vector = physics::Vec3<double>;
-  using Foot = physics::SurfaceFoot<double>;
   using Moved = MovedVertices<Real>;
 
-  static constexpr std::size_t most_pairs = 2;
+  static constexpr std::size_t most_pairs = touch_search::most_pairs;
+  struct View;
 
   enum class Stage : std::int32_t
   {
@@ -103,14 +109,10 @@ private:
   bool rests() const { return clock_[0].stage == Stage::hold && way_now() < clock_[0].earliest; }
   Vector place(std::size_t v, const Moved& moved) const;
   Vector normal(std::size_t v, const Moved& moved) const;
-  physics::SurfaceTriangle<double> triangle(std::int32_t t, const Moved& moved) const;
   void make_vertex_blocks();
   void touch(Arena& arena, double way, double dt, std::int32_t first, std::int32_t last) const;
   void sort_triangles();
-  bool meets(std::size_t p, std::int32_t t, const Moved& moved, double& gap) const;
-  bool adjoin(std::int32_t t, std::int32_t s) const;
   Found search(std::size_t p);
-  Foot follow(std::int32_t& t, const Vector& x, const Moved& moved) const;
   static void go_on(void* arena, std::int32_t block, int lane);
   void set_lane(PairVertices& vertices, PairBlock<Real>& block, int lane, const Pair& pair) const;
   void collect_pairs();
@@ -126,11 +128,9 @@ private:
   TouchKernels<Real> kernels_;
   TouchingSurface surface_;
   bool runs_ = true, rubs_ = false;
-  double reach_;                  // distance from a triangle within which a vertex forms a pair with it [m]
-  std::vector<float> stiffness_;  // of each vertex [N/m]
-  std::vector<float> per_area_;   // stiffness_ divided by the area of each vertex [N/m3]
-  // gap of each vertex at rest, not positive; the depth of contact is measured from it [m]
-  std::vector<float> overlap_;
+  double reach_;  // distance from a triangle within which a vertex forms a pair with it [m]
+  std::vector<float> stiffness_, per_area_;
+  std::vector<float> overlap_;  // the depth of contact is measured from it
   std::vector<VertexBlock<Real>> vertex_blocks_;
   std::vector<std::int32_t> bound_nodes_;  // ascending
   // first vertex in each plane of voxels; the last two entries are the number of vertices

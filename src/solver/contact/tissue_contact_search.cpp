@@ -12,24 +12,8 @@ namespace
 
 using Vector = physics::Vec3<double>;
 
-// Depth behind a triangle up to which the search finds a vertex, in shortest voxel edges. A vertex moves less than that
-// between two searches.
-constexpr double deepest_found = 0.5;
-
-// Tolerance in barycentric coordinates. It is above the error of a foot, so that no foot falls between two triangles.
-constexpr double foot_error = 0.02;
-
-// A vertex and a triangle do not face each other if the cosine between their normals exceeds this value.
-constexpr double same_way = 0.5;
-
-// Largest number of triangles that a vertex crosses in a step.
-constexpr int most_hops = 16;
-
 // Around the triangle of a pair, the corners of this many rings of triangles also get positions in each step.
 constexpr int rings = 3;
-
-// Factor on the reach that allows for motion between the sorting of triangles and the search.
-constexpr double margin = 1.1;
 
 template <class Real>
 Vector record(const Real* records, std::size_t v)
@@ -52,48 +36,35 @@ physics::Vec3<double> TissueContact<Real>::normal(std::size_t v, const Moved& mo
   return record(moved.record + 4, v);
 }
 
+// The surfaces at their present positions, for the functions of touch_search.hpp.
 template <class Real>
-physics::SurfaceTriangle<double> TissueContact<Real>::triangle(std::int32_t t, const Moved& moved) const
+struct TissueContact<Real>::View
 {
-  physics::SurfaceTriangle<double> out;
-  for (std::size_t i = 0; i < 3; ++i)
-  {
-    const auto v = surface_.triangles[t].vertex[i];
-    out.corner[i] = place(v, moved);
-    out.normal[i] = normal(v, moved);
-  }
-  return out;
-}
+  using Number = double;
+  static constexpr double edge_error = 1e-9;
 
-// Changes t, a triangle near the point x, to the triangle of the surface under x. Does not enter triangles whose
-// corners have no present positions.
-template <class Real>
-typename TissueContact<Real>::Foot TissueContact<Real>::follow(std::int32_t& t, const Vector& x,
-                                                               const Moved& moved) const
-{
-  Foot foot = physics::surface_foot(triangle(t, moved), x);
-  for (int hop = 0; hop < most_hops; ++hop)
+  Vector apart(std::int32_t v, std::int32_t w) const { return contact.place(v, moved) - contact.place(w, moved); }
+  Vector rest_apart(std::int32_t v, std::int32_t w) const
   {
-    std::int32_t to = -1;
-    double least = -1e-9;
-    for (std::size_t i = 0; i < 3; ++i)
-    {
-      const std::int32_t across = surface_.triangles[t].neighbour[i];
-      if (across < 0 || foot.weight[i] >= least)
-        continue;
-      const auto& corners = surface_.triangles[across].vertex;
-      if (!std::all_of(corners.begin(), corners.end(), [&](std::int32_t v) { return live_[v / touch_width] != 0; }))
-        continue;
-      least = foot.weight[i];
-      to = across;
-    }
-    if (to < 0)
-      break;
-    t = to;
-    foot = physics::surface_foot(triangle(t, moved), x);
+    return contact.surface_.vertices[v].rest - contact.surface_.vertices[w].rest;
   }
-  return foot;
-}
+  Vector normal(std::int32_t v) const { return contact.normal(v, moved); }
+  double overlap(std::int32_t v) const { return double(contact.overlap_[v]); }
+  std::int32_t contact_of(std::int32_t v) const { return contact.surface_.vertices[v].contact; }
+  bool joined(std::int32_t v, std::int32_t w) const { return contact.surface_.joined(v, w); }
+  const std::int32_t* corners(std::int32_t t) const { return contact.surface_.triangles[t].vertex.data(); }
+  const std::int32_t* neighbours(std::int32_t t) const { return contact.surface_.triangles[t].neighbour.data(); }
+  bool placed(std::int32_t t) const
+  {
+    const auto& corners = contact.surface_.triangles[t].vertex;
+    return std::all_of(corners.begin(), corners.end(),
+                       [&](std::int32_t v) { return contact.live_[v / touch_width] != 0; });
+  }
+  double edge() const { return contact.surface_.edge; }
+
+  const TissueContact& contact;
+  Moved moved;
+};
 
 // The kernel calls this function for a pair whose foot is beyond its triangle. The pairs of a vertex are neighbours in
 // a block; if two of them reach the same triangle, the second pair is removed.
@@ -111,7 +82,8 @@ void TissueContact<Real>::go_on(void* arena, std::int32_t block, int lane)
              b.pressed[lane],
              b.along[lane],
              { b.stretch[0][lane], b.stretch[1][lane], b.stretch[2][lane] } };
-  contact.follow(pair.triangle, contact.place(p, in.moved), in.moved);
+  physics::SurfaceTriangle<double> unused;
+  touch_search::follow(View{ contact, in.moved }, p, pair.triangle, unused);
   if (pair.triangle == at.triangle[lane])
     return;
   contact.set_lane(at, b, lane, pair);
@@ -170,59 +142,27 @@ void TissueContact<Real>::sort_triangles()
       largest = std::max(largest, dot(way, way));
     }
   }
-  grid_.build(margin * (reach_ + std::sqrt(largest)), centres);
-}
-
-// Whether a vertex and a triangle face each other and the vertex is within the reach in front of the triangle, or just
-// behind it.
-template <class Real>
-bool TissueContact<Real>::meets(std::size_t p, std::int32_t t, const Moved& moved, double& gap) const
-{
-  const auto& corners = surface_.triangles[t];
-  const Vector point = place(p, moved), inward = normal(p, moved), way = point - place(corners.vertex[0], moved);
-  const double farthest = 2 * grid_.reach() - margin * reach_;
-  if (dot(way, way) > farthest * farthest || dot(inward, normal(corners.vertex[0], moved)) > same_way ||
-      surface_.vertices[p].contact != surface_.vertices[corners.vertex[0]].contact)
-    return false;
-  const Foot foot = physics::surface_foot(triangle(t, moved), point);
-  gap = foot.gap - double(overlap_[p]);
-  if (gap > reach_ || gap < -deepest_found * surface_.edge || dot(foot.normal, inward) > 0)
-    return false;
-  for (std::size_t i = 0; i < 3; ++i)
-  {
-    const double beyond = corners.neighbour[i] < 0 ? reach_ * norm(foot.slope[i]) : foot_error;
-    if (foot.weight[i] < -beyond)
-      return false;
-  }
-  return !surface_.inseparable(p, t);
-}
-
-// Whether two triangles have a corner in common.
-template <class Real>
-bool TissueContact<Real>::adjoin(std::int32_t t, std::int32_t s) const
-{
-  const auto &a = surface_.triangles[t].vertex, &b = surface_.triangles[s].vertex;
-  return std::any_of(a.begin(), a.end(), [&](auto v) { return std::find(b.begin(), b.end(), v) != b.end(); });
+  grid_.build(touch_search::margin * (reach_ + std::sqrt(largest)), centres);
 }
 
 // Returns the nearest triangles that a vertex may touch, one on each surface near it.
 template <class Real>
 typename TissueContact<Real>::Found TissueContact<Real>::search(std::size_t p)
 {
-  const Moved moved = moved_in(moved_);
+  const View view{ *this, moved_in(moved_) };
   Found found;
   found.away.fill(2 * reach_);
-  grid_.near(place(p, moved),
+  grid_.near(place(p, view.moved),
              [&](std::int32_t t)
              {
                double gap;
-               if (!meets(p, t, moved, gap))
+               if (!touch_search::may_touch(view, static_cast<std::int32_t>(p), t, grid_.reach(), gap))
                  return;
                // If t is nearer, it replaces the triangle found so far that shares a corner with t or, if none does,
                // the farthest triangle found so far.
                std::size_t k = found.away[0] > found.away[1] ? 0 : 1;
                for (std::size_t same = 0; same < most_pairs; ++same)
-                 if (found.triangle[same] >= 0 && adjoin(t, found.triangle[same]))
+                 if (found.triangle[same] >= 0 && touch_search::adjoin(view, t, found.triangle[same]))
                    k = same;
                if (std::abs(gap) >= found.away[k])
                  return;
@@ -246,6 +186,7 @@ void TissueContact<Real>::collect_pairs()
                          from.pressed[l],
                          from.along[l],
                          { from.stretch[0][l], from.stretch[1][l], from.stretch[2][l] } });
+  const View view{ *this, moved_in(moved_) };
   std::int32_t blocks = 0;
   std::size_t lanes = touch_width;  // number of lanes used in the last block
   auto next = held.begin();
@@ -259,7 +200,8 @@ void TissueContact<Real>::collect_pairs()
     for (const std::size_t k : { nearest, 1 - nearest })
       if (const auto t = found.triangle[k];
           t >= 0 && of_vertex.size() < most_pairs &&
-          std::none_of(of_vertex.begin(), of_vertex.end(), [&](const Pair& pair) { return adjoin(pair.triangle, t); }))
+          std::none_of(of_vertex.begin(), of_vertex.end(),
+                       [&](const Pair& pair) { return touch_search::adjoin(view, pair.triangle, t); }))
         of_vertex.push_back({ p, t, 0, 0, 0, {} });
     if (of_vertex.empty())
       continue;
@@ -313,10 +255,14 @@ void TissueContact<Real>::find_overlap_at_rest()
                  static_cast<std::int32_t>(vertex_blocks_.size()));
   sort_triangles();
   std::vector<float> overlap(overlap_.size(), 0);
+  physics::SurfaceTriangle<double> unused;
   for (std::size_t p = 0; p < overlap.size(); ++p)
     for (auto t : search(p).triangle)
       if (t >= 0)
-        overlap[p] = std::min(overlap[p], static_cast<float>(follow(t, place(p, moved), moved).gap));
+      {
+        const auto foot = touch_search::follow(View{ *this, moved }, static_cast<std::int32_t>(p), t, unused);
+        overlap[p] = std::min(overlap[p], static_cast<float>(foot.gap));
+      }
   reset();
   overlap_ = overlap;
 }

@@ -15,15 +15,8 @@ namespace
 
 using Vector = TouchingSurface::Vector;
 
-// Lengths in voxel edges. Parts of a surface whose distance along the surface is below `joined_within` never touch. A
-// point that is behind a triangle at rest may touch it if its depth is at most `overlap_at_rest`; at larger depths, up
-// to `thickest_sheet`, it belongs to the other side of the same sheet of tissue.
+// Parts of a surface whose distance along the surface is below this length, in voxel edges, never touch.
 constexpr double joined_within = 2;
-constexpr double overlap_at_rest = 0.25;
-constexpr double thickest_sheet = 3;
-
-// The other side of a sheet lies within an angle with this cosine from a triangle's inward normal.
-constexpr double across_sheet = 0.5;
 
 // If the cosine of the angle between two triangles is below this value, their common edge is a crease, where vertices
 // have two normals.
@@ -236,20 +229,11 @@ void TouchingSurface::list_arrays(ArrayList& list, Effect effect) const
   list.add(effect, "joined vertices", joined_);
 }
 
-bool TouchingSurface::inseparable(std::size_t v, std::int32_t t) const
+bool TouchingSurface::joined(std::size_t v, std::size_t w) const
 {
-  const Vertex& point = vertices[v];
-  const auto begin = joined_.begin() + joined_begin_[point.source];
-  const auto end = joined_.begin() + joined_begin_[point.source + 1];
-  const auto& corners = triangles[t].vertex;
-  for (const auto corner : corners)
-    if (std::binary_search(begin, end, vertices[corner].source))
-      return true;
-  const Vector &a = vertices[corners[0]].rest, &b = vertices[corners[1]].rest, &c = vertices[corners[2]].rest;
-  const Vector normal = cross(b - a, c - a), way = point.rest - (1.0 / 3) * (a + b + c);
-  const double length = norm(way);
-  return length < thickest_sheet * edge &&
-         dot(way, normal) < -std::max(overlap_at_rest * edge, across_sheet * length) * norm(normal);
+  const auto begin = joined_.begin() + joined_begin_[vertices[v].source];
+  const auto end = joined_.begin() + joined_begin_[vertices[v].source + 1];
+  return std::binary_search(begin, end, vertices[w].source);
 }
 
 }  // namespace frontalis

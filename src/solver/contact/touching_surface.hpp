@@ -37,9 +37,12 @@ public:
   };
   explicit TouchingSurface(const Model& model);
 
-  /// Whether a vertex and a triangle never touch, because their distance along the surface is below `joined_within`, or
-  /// because they are on the two sides of one sheet of tissue.
-  bool inseparable(std::size_t v, std::int32_t t) const;
+  /// Whether two vertices never touch, because their distance along the surface is below `joined_within`.
+  bool joined(std::size_t v, std::size_t w) const;
+  /// For each source, the first of the sources near it along the surface, as an index into joined_sources(), where they
+  /// are in ascending order; the last entry is the number of all.
+  const std::vector<std::int32_t>& joined_begin() const { return joined_begin_; }
+  const std::vector<std::int32_t>& joined_sources() const { return joined_; }
 
   Binding binding() const;  ///< binding of the vertices
   void list_arrays(ArrayList& list, Effect effect) const;

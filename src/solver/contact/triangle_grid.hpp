@@ -1,6 +1,7 @@
 #pragma once
 
 #include "frontalis/physics/number.hpp"
+#include "solver/contact/touch_search.hpp"
 #include "solver/stepping/array_list.hpp"
 
 #include <array>
@@ -47,13 +48,9 @@ private:
     { return std::abs(x) < 1e9 * edge_[0] ? static_cast<std::int64_t>(std::floor(x / edge_[0])) : std::int64_t(0); };
     return { { index(p.x), index(p.y), index(p.z) } };
   }
-  // The factors are primes of Teschner et al., Optimized spatial hashing for collision detection of deformable objects,
-  // VMV 2003.
   std::size_t hash(std::int64_t x, std::int64_t y, std::int64_t z) const
   {
-    const auto mixed = static_cast<std::uint64_t>(x) * 73856093u ^ static_cast<std::uint64_t>(y) * 19349663u ^
-                       static_cast<std::uint64_t>(z) * 83492791u;
-    return static_cast<std::size_t>(mixed & (begin_.size() - 2));
+    return touch_search::cell_hash(x, y, z) & (begin_.size() - 2);
   }
 
   std::vector<double> edge_ = std::vector<double>(1, 1.0);  // edge of a cell [m]; the vector has one entry

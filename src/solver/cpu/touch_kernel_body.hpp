@@ -1,6 +1,7 @@
 #pragma once
 
 #include "frontalis/physics/surface_touch.hpp"
+#include "frontalis/physics/surface_vertex.hpp"
 #include "solver/cpu/touch_kernel.hpp"
 
 namespace frontalis
@@ -53,25 +54,15 @@ struct TouchKernelBody
     for (int l = 0; l < Lanes::count; ++l)
       Lanes::copy_record(records + Lanes::record(l), p + l * stride);
   }
-  static FRONTALIS_LAW Vector scaled(const Vector& v, const Real (&by)[3])
+  static FRONTALIS_LAW physics::SideWeights<Batch> weights(const VertexBlock<Real>& b, int lane)
   {
-    return { Batch(by[0]) * v.x, Batch(by[1]) * v.y, Batch(by[2]) * v.z };
+    return { Lanes::load(b.coordinates[0] + lane), Lanes::load(b.coordinates[1] + lane),
+             Lanes::load(b.coordinates[2] + lane) };
   }
-
-  // Interpolation weights of the lower and the upper side of the voxel along each axis.
-  struct Weights
+  static FRONTALIS_LAW Vector inverse_spacing(const VertexBlock<Real>& b)
   {
-    FRONTALIS_LAW Weights(const VertexBlock<Real>& b, int lane)
-    {
-      Batch(*const axes[3])[2] = { &x, &y, &z };
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        (*axes[axis])[1] = Lanes::load(b.coordinates[axis] + lane);
-        (*axes[axis])[0] = Number::of(1) - (*axes[axis])[1];
-      }
-    }
-    Batch x[2], y[2], z[2];
-  };
+    return { Batch(b.inverse_spacing[0]), Batch(b.inverse_spacing[1]), Batch(b.inverse_spacing[2]) };
+  }
 
   static void place(const VertexBlock<Real>* blocks, const Moved& vertices, const std::array<const Real*, 3>& u,
                     std::int32_t first, std::int32_t last)
@@ -84,40 +75,22 @@ struct TouchKernelBody
   static FRONTALIS_LAW void place(const VertexBlock<Real>& b, const Moved& vertices,
                                   const std::array<const Real*, 3>& u, int lane, std::ptrdiff_t at)
   {
-    const Batch none = Number::of(0);
-    const Weights w(b, lane);
-    // `sum` is the displacement; the others are its derivatives with respect to the coordinates.
-    Vector sum{ none, none, none }, by_x = sum, by_y = sum, by_z = sum;
-    for (int two = 0; two < 4; ++two)
-    {
-      Vector low, high;
-      Lanes::gather_two(u[0], b.node[two] + lane, low.x, high.x);
-      Lanes::gather_two(u[1], b.node[two] + lane, low.y, high.y);
-      Lanes::gather_two(u[2], b.node[two] + lane, low.z, high.z);
-      const int j = two & 1, k = two >> 1;
-      const Batch weight = w.y[j] * w.z[k];
-      const Vector change = high - low, moved = low + w.x[1] * change;
-      sum = sum + weight * moved;
-      by_x = by_x + weight * change;
-      by_y = j == 0 ? by_y - w.z[k] * moved : by_y + w.z[k] * moved;
-      by_z = k == 0 ? by_z - w.y[j] * moved : by_z + w.y[j] * moved;
-    }
-    Vector tangent[2];
+    const Vector tangent[2] = { load(b.tangent[0], lane), load(b.tangent[1], lane) };
+    const auto vertex = physics::surface_vertex(weights(b, lane), tangent, inverse_spacing(b),
+                                                [&](int two, Vector& low, Vector& high)
+                                                {
+                                                  const std::int32_t* const node = b.node[two] + lane;
+                                                  Lanes::gather_two(u[0], node, low.x, high.x);
+                                                  Lanes::gather_two(u[1], node, low.y, high.y);
+                                                  Lanes::gather_two(u[2], node, low.z, high.z);
+                                                });
     for (int t = 0; t < 2; ++t)
-    {
-      const Vector along = scaled(load(b.tangent[t], lane), b.inverse_spacing);
-      tangent[t] = load(b.tangent[t], lane) + along.x * by_x + along.y * by_y + along.z * by_z;
-    }
-    const Vector area = cross(tangent[0], tangent[1]);
-    const Batch scale = Number::of(1) / Number::max(norm(area), Number::of(1e-12));
-    const Vector normal = scale * area;
-    store(scale * cross(tangent[1], normal), dual(vertices, at, 0), 0);
-    store(scale * cross(normal, tangent[0]), dual(vertices, at, 1), 0);
+      store(vertex.dual[t], dual(vertices, at, t), 0);
     if (vertices.change != nullptr)
-      store_as_records(sum - consecutive(vertices.record + at * Moved::stride, Moved::stride), vertices.change + 4 * at,
-                       4);
-    store_as_records(sum, vertices.record + at * Moved::stride, Moved::stride);
-    store_as_records(normal, vertices.record + at * Moved::stride + 4, Moved::stride);
+      store_as_records(vertex.displacement - consecutive(vertices.record + at * Moved::stride, Moved::stride),
+                       vertices.change + 4 * at, 4);
+    store_as_records(vertex.displacement, vertices.record + at * Moved::stride, Moved::stride);
+    store_as_records(vertex.normal, vertices.record + at * Moved::stride + 4, Moved::stride);
   }
 
   static FRONTALIS_LAW Vector moved(const Moved& vertices, const std::int32_t* index)
@@ -277,19 +250,12 @@ struct TouchKernelBody
       const Vector direction = consecutive(vertices.record + Moved::stride * at + 4, Moved::stride);
       for (int row = 0; row < 8; ++row)
         Lanes::store(none, sums + 8 * at + row * Lanes::count);
-      // The normal turns with the derivatives of the displacement along the tangents.
-      const Vector along = scaled(dot(turn, load(dual(vertices, at, 0), 0)) * load(b.tangent[0], lane) +
-                                      dot(turn, load(dual(vertices, at, 1), 0)) * load(b.tangent[1], lane),
-                                  b.inverse_spacing);
-      const Weights w(b, lane);
+      const Vector tangent[2] = { load(b.tangent[0], lane), load(b.tangent[1], lane) };
+      const Vector along = physics::normal_forces(turn, load(dual(vertices, at, 0), 0), load(dual(vertices, at, 1), 0),
+                                                  tangent, inverse_spacing(b));
+      const auto w = weights(b, lane);
       for (int corner = 0; corner < 8; ++corner)
-      {
-        const int i = corner & 1, j = corner >> 1 & 1, k = corner >> 2;
-        const Batch by_x = w.y[j] * w.z[k] * along.x, by_y = w.z[k] * along.y, by_z = w.y[j] * along.z;
-        const Batch across = (j == 0 ? none - by_y : by_y) + (k == 0 ? none - by_z : by_z);
-        const Batch turned = w.x[i] * across + (i == 0 ? none - by_x : by_x);
-        Lanes::store_records((w.x[i] * w.y[j] * w.z[k]) * force - turned * direction, part[corner]);
-      }
+        Lanes::store_records(physics::surface_node_force(w, corner, force, along, direction), part[corner]);
       for (int l = 0; l < Lanes::count; ++l)
       {
         const std::int32_t plane = b.plane[lane + l];

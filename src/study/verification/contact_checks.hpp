@@ -10,17 +10,23 @@ namespace frontalis
 {
 
 /// Calls `verify` for each backend of this machine. Backends that do not compute contact are listed as skipped.
+inline void unless_unavailable(Finding& finding, const std::function<void()>& verify)
+{
+  try
+  {
+    verify();
+  }
+  catch (const BackendUnavailable& why)
+  {
+    if (finding.skipped.find(why.what()) == std::string::npos)
+      finding.skipped += (finding.skipped.empty() ? "" : "; ") + std::string(why.what());
+  }
+}
+
 inline void on_every_backend(Finding& finding, const std::function<void(const Backend&)>& verify)
 {
   for (const Backend& backend : available_backends())
-    try
-    {
-      verify(backend);
-    }
-    catch (const BackendUnavailable& why)
-    {
-      finding.skipped += (finding.skipped.empty() ? "" : "; ") + std::string(why.what());
-    }
+    unless_unavailable(finding, [&] { verify(backend); });
 }
 
 inline std::unique_ptr<Solver> make(const Model& model, const Backend& backend, bool ledger = false,

@@ -1,0 +1,163 @@
+#include "cuda/kernels/tissue_contact_kernels.hpp"
+
+#include "cuda/kernels/push_nodes.cuh"
+#include "cuda/kernels/tissue_contact.cuh"
+#include "frontalis/physics/sliding.hpp"
+
+namespace frontalis
+{
+namespace cuda
+{
+
+// Small blocks spread a few thousand vertices over all multiprocessors.
+constexpr std::uint32_t touch_block = 64;
+
+// The kernels of this file may be launched before the kernel before them has ended (launch_after()). They wait here
+// until it has ended. GPUs before compute capability 9.0 never launch them early.
+__device__ __forceinline__ void wait_for_kernel_before()
+{
+#if __CUDA_ARCH__ >= 900
+  cudaGridDependencySynchronize();
+#endif
+}
+// Allows the next kernel to be launched.
+__device__ __forceinline__ void let_next_kernel_start()
+{
+#if __CUDA_ARCH__ >= 900
+  cudaTriggerProgrammaticLaunchCompletion();
+#endif
+}
+
+__global__ void __launch_bounds__(touch_block)
+    place_vertices(const __grid_constant__ TissueContactArguments c, const float4* u)
+{
+  let_next_kernel_start();
+  const std::uint32_t v = blockIdx.x * touch_block + threadIdx.x;
+  // The control was written before the latest step, which has begun after that.
+  const TouchStage stage = c.looks_only ? TouchStage::hold : c.control->next;
+  float moved = 0;
+  if (v < c.vertex_count)
+    moved = place_touching(c, v, u, wait_for_kernel_before);
+  else
+    wait_for_kernel_before();
+  if (c.looks_only)
+    return;
+#pragma unroll
+  for (int apart = 1; apart < 32; apart *= 2)
+    moved = fmaxf(moved, __shfl_xor_sync(0xffffffffu, moved, apart));
+  if (threadIdx.x % 32 == 0)
+    atomicMax(&c.control->moved, __float_as_uint(moved));
+  if (v == 0)
+    c.control->stage = stage;
+  if (stage == TouchStage::sort)
+    clear_grid(c, v, gridDim.x * touch_block);
+}
+
+template <bool rubs>
+__global__ void __launch_bounds__(touch_block)
+    touch_surfaces(const __grid_constant__ TissueContactArguments c, float dt, float response)
+{
+  const std::uint32_t v = blockIdx.x * touch_block + threadIdx.x;
+  let_next_kernel_start();
+  TouchStage stage = TouchStage::hold;
+  const auto wait = [&]
+  {
+    wait_for_kernel_before();
+    if (!c.looks_only)
+      stage = c.control->stage;
+  };
+  if (v < c.vertex_count)
+    touch_triangles<rubs>(c, v, response, wait);
+  else
+    wait();
+  if (stage == TouchStage::sort)
+  {
+    const float cell = cell_edge(c);
+    for (std::uint32_t t = v; t < c.triangle_count; t += gridDim.x * touch_block)
+      sort_triangle(c, t, cell);
+  }
+  if (stage == TouchStage::search && v < c.vertex_count)
+    search_pairs(c, v);
+  if (v == 0 && !c.looks_only)
+    choose_stage(c, dt);
+}
+
+__global__ void __launch_bounds__(touch_block) touch_springs(const TissueContactArguments c, const float4* u)
+{
+  const std::uint32_t v = blockIdx.x * touch_block + threadIdx.x;
+  if (v >= c.vertex_count)
+    return;
+  const Place moved = bound_displacement(c.bound.coordinates[v], c.bound.nodes[2 * v], c.bound.nodes[2 * v + 1], u);
+  // A vertex has half of the stiffness, because both sides push; the stiffness counts twice, because both sides move.
+  const float units = -4 * c.per_newton * c.vertices[v].stiffness;
+  const auto in_units = [&](float x) { return static_cast<unsigned long long>(__float2ll_rn(units * x)); };
+  c.sums[v] = { { in_units(moved.x), in_units(moved.y), in_units(moved.z) }, { 0, 0, 0 } };
+}
+
+__global__ void __launch_bounds__(push_block)
+    push_touching(const __grid_constant__ TissueContactArguments c, const PushTarget to)
+{
+  push_node(c.bound, to, wait_for_kernel_before,
+            [&](std::uint32_t v, std::uint32_t b) { return corner_push(c, v, b); });
+}
+
+namespace
+{
+
+std::uint32_t blocks(const TissueContactArguments& contact)
+{
+  return (contact.vertex_count + touch_block - 1) / touch_block;
+}
+
+// Launches a kernel that begins with wait_for_kernel_before().
+template <class... Parameters, class... Arguments>
+cudaError_t launch_after(void (*kernel)(Parameters...), std::uint32_t blocks, std::uint32_t threads,
+                         cudaStream_t stream, const Arguments&... arguments)
+{
+  static const bool early = []
+  {
+    int device = 0, major = 0;
+    cudaGetDevice(&device);
+    cudaDeviceGetAttribute(&major, cudaDevAttrComputeCapabilityMajor, device);
+    return major >= 9;
+  }();
+  cudaLaunchAttribute attribute{};
+  attribute.id = cudaLaunchAttributeProgrammaticStreamSerialization;
+  attribute.val.programmaticStreamSerializationAllowed = 1;
+  cudaLaunchConfig_t config{};
+  config.gridDim = blocks;
+  config.blockDim = threads;
+  config.stream = stream;
+  config.attrs = &attribute;
+  config.numAttrs = early ? 1 : 0;
+  return cudaLaunchKernelEx(&config, kernel, arguments...);
+}
+
+}  // namespace
+}  // namespace cuda
+
+cudaError_t launch_touch(const TissueContactArguments& contact, const float4* u, double dt, cudaStream_t stream)
+{
+  const std::uint32_t blocks = cuda::blocks(contact);
+  const auto response = static_cast<float>(physics::friction_response(dt));
+  if (const auto status = cuda::launch_after(cuda::place_vertices, blocks, cuda::touch_block, stream, contact, u);
+      status != cudaSuccess)
+    return status;
+  const auto touch = contact.rubs ? cuda::touch_surfaces<true> : cuda::touch_surfaces<false>;
+  return cuda::launch_after(touch, blocks, cuda::touch_block, stream, contact, static_cast<float>(dt), response);
+}
+
+cudaError_t launch_touch_springs(const TissueContactArguments& contact, const float4* u, cudaStream_t stream)
+{
+  cuda::touch_springs<<<cuda::blocks(contact), cuda::touch_block, 0, stream>>>(contact, u);
+  return cudaGetLastError();
+}
+
+cudaError_t launch_push_touching(const StepArguments& g, const TissueContactArguments& contact, float factor,
+                                 float* const (&v)[3], cudaStream_t stream)
+{
+  return cuda::launch_after(cuda::push_touching, cuda::push_blocks(contact.bound), cuda::push_block, stream, contact,
+                            cuda::push_target(g, factor, v));
+}
+
+}  // namespace frontalis

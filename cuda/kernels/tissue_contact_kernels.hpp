@@ -1,0 +1,21 @@
+#pragma once
+
+#include "cuda/kernels/tissue_contact_arguments.hpp"
+
+namespace frontalis
+{
+
+struct StepArguments;
+
+/// Finds the forces of contact of tissue with itself at displacements `u` of nodes and stores them in contact.sums.
+/// `dt`: length of the step [s].
+cudaError_t launch_touch(const TissueContactArguments& contact, const float4* u, double dt, cudaStream_t stream);
+
+/// Stores in contact.sums the forces of vertices that all touch and stick, as in ContactStiffness::add_forces().
+cudaError_t launch_touch_springs(const TissueContactArguments& contact, const float4* u, cudaStream_t stream);
+
+/// Passes the forces of contact.sums on to nodes, as launch_push_nodes() does.
+cudaError_t launch_push_touching(const StepArguments& arguments, const TissueContactArguments& contact, float factor,
+                                 float* const (&v)[3], cudaStream_t stream);
+
+}  // namespace frontalis
