@@ -289,7 +289,7 @@ RenderMesh body_at_rest(const Model& model, const Contact& contact)
   if (contact.name.compare(0, 5, "teeth") == 0 && corner != model.landmarks.end())
   {
     const auto landmark = static_cast<std::size_t>(corner - model.landmarks.begin());
-    return painted_teeth(surface, contact.bone >= 0, model.landmark_positions[landmark][2]);
+    return painted_teeth(surface, contact.bone >= 0, model.to_face(model.landmark_positions[landmark])[2]);
   }
   BodyAppearance look = body_appearance(contact.name, contact.points.empty(), surface);
   RenderMesh mesh;

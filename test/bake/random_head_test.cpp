@@ -162,6 +162,8 @@ TEST(RandomHeads, CanBeBaked)
     try
     {
       const Model model = bake(scene);
+      std::printf("head %d: %zu voxels\n", n, model.voxels.size());
+      std::fflush(stdout);
       EXPECT_EQ(model.muscles.size(), muscles);
       EXPECT_GT(model.voxels.size(), 15000u);
       EXPECT_GT(model.landmarks.size(), 10u);

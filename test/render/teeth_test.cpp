@@ -66,5 +66,22 @@ TEST(Teeth, are_painted_between_gums_and_their_edges)
   }
 }
 
+TEST(Teeth, are_painted_above_the_corners_of_a_mouth_far_from_the_models_own_origin)
+{
+  Model model;
+  model.to_face.translation = { 0.1, 0, -0.5 };
+  model.landmarks = { "mouth_corner_left" };
+  model.landmark_positions = { { -0.1, 26e-3, 0.5 } };
+  Contact contact;
+  contact.name = "teeth_above";
+  contact.bone = -1;
+  contact.shape = arch();
+  for (auto& p : contact.shape.vertices)
+    p = { p[0] - 0.1, p[1], p[2] + 0.5 };
+  const RenderMesh mesh = body_at_rest(model, contact);
+  EXPECT_EQ(at(mesh, 4.3e-3, 6e-3).first, teeth_colour);
+  EXPECT_EQ(at(mesh, 4e-3, -5e-3).second, inside_label);
+}
+
 }  // namespace
 }  // namespace frontalis
