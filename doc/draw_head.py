@@ -2,11 +2,12 @@
 """Draws the parametric head: draw_head.py SURFACES CAGE.obj PICTURES
 
 SURFACES is the folder that `frontalis bake config/head.yaml --surfaces SURFACES -o MODEL` writes, CAGE.obj the control cage, whose groups
-colour the skin. Writes skin.png, close.png, skull.png and muscles.png to the folder PICTURES. Needs python3-vtk9; without a display run it
-under xvfb-run.
+colour the skin. Writes skin.png, close.png, skull.png, muscles.png and holds.png to the folder PICTURES. Needs python3-vtk9; without a
+display run it under xvfb-run.
 """
 import colorsys
 import pathlib
+import re
 import sys
 
 import numpy
@@ -14,7 +15,7 @@ import vtk
 from vtk.util.numpy_support import numpy_to_vtk
 
 SKIN = {"face": (0.86, 0.68, 0.58), "lid_margin": (0.80, 0.52, 0.47), "lips": (0.74, 0.42, 0.40), "mucosa": (0.62, 0.28, 0.28), "mouth": (0.55, 0.22, 0.22),
-        "nostril": (0.5, 0.3, 0.26), "conjunctiva": (0.8, 0.5, 0.48), "cut": (0.6, 0.4, 0.35)}
+        "nostril": (0.27, 0.13, 0.11), "conjunctiva": (0.8, 0.5, 0.48), "cut": (0.6, 0.4, 0.35)}
 HAIR = (0.29, 0.20, 0.145)
 IRIS, PUPIL = 5.85e-3, 1.9e-3  # radii [m]
 
@@ -156,14 +157,16 @@ def main(surfaces, cage, pictures):
     eyes = [eye_of(parts[name][0]) for name in ("eye_left", "eye_right")]
     bones = [actor_of(*parts[name], colour) for name, colour in (("skull", (0.9, 0.86, 0.76)), ("mandible", (0.87, 0.82, 0.70)),
                                                                  ("teeth_upper", (0.97, 0.96, 0.92)), ("teeth_lower", (0.97, 0.96, 0.92)))]
-    others = ("face", "visible", "cut", "mouth", "modiolus_left", "modiolus_right", "eye_left", "eye_right", "skull", "mandible", "teeth_upper", "teeth_lower",
-              "hair_top", "lining", "gums_upper", "gums_lower", "fissure", "septum", "tarsus_upper", "tarsus_lower", "lid_corners", "canthi", "lids")
-    muscles = []
-    names = [name for name in parts if name not in others and not name.startswith("fat_")]
-    kinds = sorted({name.replace("_left", "").replace("_right", "") for name in names})
-    for name in names:
-        kind = kinds.index(name.replace("_left", "").replace("_right", ""))
-        muscles.append(actor_of(*parts[name], colorsys.hls_to_rgb((0.95 + 0.382 * kind * 0.4) % 1, 0.42 + 0.05 * (kind % 3), 0.55)))
+    # muscles.yaml, beside the cage, tells muscles from volumes without fibres
+    entries = re.findall(r"^(\w+):\n((?:  .*\n)+)", (pathlib.Path(cage).parent / "muscles.yaml").read_text(), re.MULTILINE)
+    sides = {name: [part for part in (name, name + "_left", name + "_right") if part in parts] for name, text in entries}
+    pads = {name for name, text in entries if "pad: true" in text}
+    holds = {"fat": (0.93, 0.78, 0.35), "ligament": (0.97, 0.97, 0.95), "adhesion": (0.97, 0.97, 0.95), "glide": (0.2, 0.45, 0.75)}
+    held = [actor_of(*parts[part], holds.get(name.split("_")[0], (0.55, 0.68, 0.85)), 1 if "_" in name else 0.55)
+            for name in sorted(pads) for part in sides[name]]
+    kinds = sorted(set(sides) - pads)
+    muscles = [actor_of(*parts[part], colorsys.hls_to_rgb((0.95 + 0.382 * n * 0.4) % 1, 0.42 + 0.05 * (n % 3), 0.55))
+               for n, name in enumerate(kinds) for part in sides[name]]
     head = numpy.array([-70.0, 0, -20])
     whole = [(0, 0, head, 150), (40, 3, head, 150), (90, 0, head, 150)]
     draw([actor_of(*skin, colours), hair] + eyes, whole, pictures / "skin.png")
@@ -171,6 +174,7 @@ def main(surfaces, cage, pictures):
                                              (50, 0, numpy.array([0, 0, -60.0]), 45)], pictures / "close.png")
     draw(bones + eyes, whole, pictures / "skull.png")
     draw([actor_of(*skin, (0.86, 0.68, 0.58), 0.22)] + eyes + bones + muscles, whole, pictures / "muscles.png")
+    draw([actor_of(*skin, (0.86, 0.68, 0.58), 0.22)] + eyes + bones + held, whole, pictures / "holds.png")
 
 
 if __name__ == "__main__":

@@ -100,6 +100,12 @@ void add_surface(const Surface& surface, Content& content)
       content.add(hash_of_file(file));
   if (shape.tissue != 1)
     content.add("tissue", shape.tissue);
+  if (shape.kind == Shape::Kind::muscle)
+    content.add(shape.curves, shape.ring ? "ring" : "strap", shape.thickness);
+  for (const auto& site : shape.depths)
+    content.add(site.at, site.depth);
+  if (shape.below)
+    add_surface(*shape.below, content);
 }
 
 void add_muscle(const SceneMuscle& muscle, Content& content)

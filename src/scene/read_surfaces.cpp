@@ -160,10 +160,55 @@ void read_head(Mapping& mapping, MeshFolder& folder, Shape& shape, Parts& parts)
     read_parts(many, one, "head", {}, {}, shape, parts);
 }
 
-Shape read_shape(const Node& kind_node, Mapping& mapping, MeshFolder& folder, Parts& parts)
+/// Reads a muscle between curves.
+void read_muscle_shape(Mapping& mapping, Shape& shape)
+{
+  shape.thickness = read_length(mapping.required("thickness", "a length greater than 0"));
+  shape.ring = mapping.optional("ring").boolean(false);
+  const Node curves = mapping.required("curves", "a list of at least two curves");
+  const std::size_t least = shape.ring ? 3 : 2;
+  for (const Node& curve : curves.entries())
+  {
+    std::vector<Vector3> points;
+    for (const Node& point : curve.entries())
+      points.push_back(point.vector(Dimension::length, any_number, {}));
+    if (points.size() < least && !curve.faulty())
+      curve.fault("found {} positions; must be at least {}", points.size(), least);
+    shape.curves.push_back(points);
+  }
+  if (shape.curves.size() < 2 && !curves.faulty())
+    curves.fault("found {} curves; must be at least two", shape.curves.size());
+}
+
+/// Reads a surface at given depths below one of the surfaces `known`, which stand above it in the file.
+void read_offset(Mapping& mapping, const std::vector<Surface>& known, Shape& shape)
+{
+  Names above{ "earlier surface", {}, true };
+  for (const Surface& surface : known)
+    above.names.push_back(surface.name);
+  const std::string below = mapping.required("below", "the name of a closed surface").reference(above);
+  for (const Surface& surface : known)
+    if (surface.name == below)
+      shape.below = std::make_shared<Surface>(surface);
+  const Node depths = mapping.required("depths", "a list of places and depths");
+  for (const Node& entry : depths.entries())
+  {
+    Shape::Depth site;
+    Mapping fields(entry);
+    site.at = fields.required("at", "a position").vector(Dimension::length, any_number, site.at);
+    site.depth = read_length(fields.required("depth", "a length greater than 0"));
+    shape.depths.push_back(site);
+  }
+  if (shape.depths.empty() && !depths.faulty())
+    depths.fault("found no place; must be at least one");
+}
+
+Shape read_shape(const Node& kind_node, Mapping& mapping, MeshFolder& folder, const std::vector<Surface>& known,
+                 Parts& parts)
 {
   // The names of Shape::Kind, in its order.
-  static const std::vector<std::string> kinds{ "box", "sphere", "ellipsoid", "cylinder", "torus", "forehead", "head" };
+  static const std::vector<std::string> kinds{ "box",      "sphere", "ellipsoid", "cylinder", "torus",
+                                               "forehead", "head",   "muscle",    "offset" };
   const std::string name = kind_node.choice(kinds);
   Shape shape;
   if (name.empty())
@@ -177,6 +222,10 @@ Shape read_shape(const Node& kind_node, Mapping& mapping, MeshFolder& folder, Pa
     read_forehead(mapping, shape, parts);
   else if (shape.kind == Shape::Kind::head)
     read_head(mapping, folder, shape, parts);
+  else if (shape.kind == Shape::Kind::muscle)
+    read_muscle_shape(mapping, shape);
+  else if (shape.kind == Shape::Kind::offset)
+    read_offset(mapping, known, shape);
   else
     shape.centre = mapping.optional("centre").vector(Dimension::length, any_number, shape.centre);
   switch (shape.kind)
@@ -196,6 +245,8 @@ Shape read_shape(const Node& kind_node, Mapping& mapping, MeshFolder& folder, Pa
       break;
     case Shape::Kind::forehead:
     case Shape::Kind::head:
+    case Shape::Kind::muscle:
+    case Shape::Kind::offset:
       break;
   }
   if (shape.kind == Shape::Kind::torus)
@@ -248,7 +299,7 @@ void read_surfaces(const Node& node, const Node& mesh_directory, const SceneOpti
       mapping.ignore_rest();
     }
     else if (shape)
-      surface.shape = read_shape(mapping.optional("shape"), mapping, folder, parts);
+      surface.shape = read_shape(mapping.optional("shape"), mapping, folder, scene.surfaces, parts);
     else
     {
       surface.file = folder.resolve(mapping.optional("file"));

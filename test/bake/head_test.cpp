@@ -3,7 +3,7 @@
 
 #include "bake/mesh/surface.hpp"
 #include "bake/shapes/head/head.hpp"
-#include "bake/shapes/head/muscle_net.hpp"
+#include "bake/shapes/muscle_net.hpp"
 
 #include "frontalis/error.hpp"
 

@@ -38,7 +38,7 @@ const Scene& every_key()
 TEST(EveryKey, surfaces)
 {
   const auto& surfaces = every_key().surfaces;
-  ASSERT_EQ(surfaces.size(), 7U);
+  ASSERT_EQ(surfaces.size(), 10U);
   EXPECT_EQ(surfaces[0].name, "scanned");
   EXPECT_EQ(surfaces[0].file, source + "/test/scene/meshes/triangle.obj");
   EXPECT_FALSE(surfaces[0].shape);
@@ -65,6 +65,18 @@ TEST(EveryKey, surfaces)
   EXPECT_EQ(surfaces[6].shape->part, "skull");
   EXPECT_NEAR(surfaces[6].shape->dimensions.at("brow_thickness"), 0.008, 1e-15);
   EXPECT_NEAR(surfaces[6].shape->dimensions.at("width"), 0.12, 1e-15);
+  const Shape &strap = *surfaces[7].shape, &loop = *surfaces[8].shape, &bone = *surfaces[9].shape;
+  EXPECT_EQ(strap.kind, Shape::Kind::muscle);
+  ASSERT_EQ(strap.curves.size(), 2U);
+  expect_vector(strap.curves[1][1], { 0.02, 0.01, 0 });
+  EXPECT_NEAR(strap.thickness, 0.003, 1e-15);
+  EXPECT_FALSE(strap.ring);
+  EXPECT_TRUE(loop.ring);
+  EXPECT_EQ(bone.kind, Shape::Kind::offset);
+  EXPECT_EQ(bone.below->name, "box");
+  ASSERT_EQ(bone.depths.size(), 2U);
+  expect_vector(bone.depths[0].at, { 0.01, 0.02, 0.03 });
+  EXPECT_NEAR(bone.depths[1].depth, 0.004, 1e-15);
 }
 
 // A scene with one material; `keys` are the parameters of its law.
@@ -162,7 +174,7 @@ TEST(EveryKey, volumes_materials_and_layers)
   EXPECT_EQ(tissue.material, "dermis");
   EXPECT_TRUE(tissue.tissue);
   EXPECT_EQ(tissue.priority, 3);
-  EXPECT_EQ(tissue.line, 14);
+  EXPECT_EQ(tissue.line, 17);
   EXPECT_EQ(scene.volumes[1].within, "box");
   EXPECT_NEAR(scene.volumes[1].depth_min, 0.002, 1e-15);
   EXPECT_NEAR(scene.volumes[1].depth_max, 0.004, 1e-15);

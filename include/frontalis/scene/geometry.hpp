@@ -14,6 +14,7 @@ namespace frontalis
 using Vector3 = std::array<double, 3>;
 
 struct HeadTemplate;
+struct Surface;
 
 /// Axis-aligned box in scene coordinates [m]. By default all sides lie at infinity.
 struct Region
@@ -35,7 +36,9 @@ struct Shape
     cylinder,   ///< centre, axis, radius, length; closed by caps
     torus,      ///< centre, axis, radius (of the ring), minor_radius (of the tube)
     forehead,   ///< part (one of forehead_parts()), dimensions
-    head        ///< head, part (one of its parts()), dimensions, tissue
+    head,       ///< head, part (one of its parts()), dimensions, tissue
+    muscle,     ///< curves, ring, thickness
+    offset      ///< below, depths
   };
   Kind kind = Kind::box;
   Vector3 centre{ 0, 0, 0 };
@@ -50,6 +53,17 @@ struct Shape
   /// Dimensions of the generated forehead or head [m] by name; dimensions that are not given have their defaults.
   std::map<std::string, double> dimensions;
   double tissue = 1;  ///< head: factor on the template's depths of the bone below the skin
+  /// Muscle: lines across its fibres, from the origin to the insertion; ring: loops, from the inner to the outer [m].
+  std::vector<std::vector<Vector3>> curves;
+  bool ring = false;
+  double thickness = 0;                  ///< of a muscle's middle [m]
+  std::shared_ptr<const Surface> below;  ///< the closed surface from which depths are measured
+  struct Depth
+  {
+    Vector3 at{ 0, 0, 0 };  ///< a place near that surface [m]
+    double depth = 0;       ///< [m]
+  };
+  std::vector<Depth> depths;  ///< values between and beyond these places are interpolated
 };
 
 struct Surface

@@ -3,7 +3,7 @@
 #include "bake/fibres/fit_nurbs.hpp"
 #include "bake/messages.hpp"
 #include "bake/shapes/head/head.hpp"
-#include "bake/shapes/head/muscle_net.hpp"
+#include "bake/shapes/muscle_net.hpp"
 
 namespace frontalis
 {
@@ -20,7 +20,8 @@ constexpr double farthest_end = 0.5;  // largest distance of an origin or insert
 
 const char* const remedy = "; give 'origin' and 'insertion', a control 'net', or one direction 'fibre'";
 
-/// The control net of a muscle whose only surface is a part of a generated head; empty for other muscles.
+/// The control net of a muscle whose only surface is made from curves, as are those of a generated head; empty for
+/// other muscles.
 std::optional<ControlNet> made_net(const Scene& scene, const SceneMuscle& muscle)
 {
   const auto named = [](const auto& list, const std::string& name)
@@ -29,9 +30,11 @@ std::optional<ControlNet> made_net(const Scene& scene, const SceneMuscle& muscle
   if (muscle.origin.given() || muscle.ring || volume == scene.volumes.end() || volume->inside.size() != 1)
     return std::nullopt;
   const auto surface = named(scene.surfaces, volume->inside.front());
-  if (surface == scene.surfaces.end() || !surface->shape || surface->shape->kind != Shape::Kind::head)
+  if (surface == scene.surfaces.end() || !surface->shape)
     return std::nullopt;
-  return head_muscle_net(*surface->shape);
+  if (surface->shape->kind == Shape::Kind::muscle)
+    return curved_muscle_net(*surface->shape);
+  return surface->shape->kind == Shape::Kind::head ? head_muscle_net(*surface->shape) : std::nullopt;
 }
 
 /// All surfaces that bound a muscle's volume, as one mesh.

@@ -5,6 +5,7 @@
 #include "bake/mesh/mesh_faults.hpp"
 #include "bake/mesh/subdivide.hpp"
 #include "bake/shapes/head/head.hpp"
+#include "bake/shapes/muscle_net.hpp"
 
 #include <assimp/Importer.hpp>
 #include <assimp/config.h>
@@ -51,6 +52,30 @@ constexpr double largest_overlap = 0.02;
 constexpr double deepest_overlap = 0.04;
 constexpr double widest_crossing = 0.05;
 constexpr int overlap_samples = 10000;
+
+/// Makes a shape of any kind.
+TriangleMesh make_any(const Shape& shape, double unit, double voxel)
+{
+  constexpr double default_edge = 1.75e-3;  // [m]
+  switch (shape.kind)
+  {
+    case Shape::Kind::forehead:
+    {
+      Shape forehead = shape;
+      if (shape.edge <= 0)
+        forehead.edge = std::min(default_edge, voxel);
+      return make_forehead(forehead);
+    }
+    case Shape::Kind::head:
+      return make_head(shape);
+    case Shape::Kind::muscle:
+      return net_surface(curved_muscle_net(shape), shape.edge > 0 ? shape.edge : default_edge);
+    case Shape::Kind::offset:
+      return make_offset(shape, load_surface(*shape.below, unit, voxel).mesh);
+    default:
+      return make_shape(shape);
+  }
+}
 
 /// Makes the surface of a control cage, an OBJ file of polygons that is mirrored and subdivided as the scene says.
 TriangleMesh import_cage(const Surface& surface)
@@ -213,15 +238,13 @@ TriangleMesh import_mesh(const std::string& file, double unit)
   return mesh;
 }
 
-LoadedSurface load_surface(const Surface& surface, double unit)
+LoadedSurface load_surface(const Surface& surface, double unit, double voxel)
 {
   LoadedSurface loaded;
   TriangleMesh& mesh = loaded.mesh;
   if (surface.shape)
   {
-    mesh = surface.shape->kind == Shape::Kind::forehead ? make_forehead(*surface.shape)
-           : surface.shape->kind == Shape::Kind::head   ? make_head(*surface.shape)
-                                                        : make_shape(*surface.shape);
+    mesh = make_any(*surface.shape, unit, voxel);
     join_vertices(mesh);
     make_orientation_consistent(mesh);
     if (unbalanced_edges(mesh).empty() ? signed_volume(mesh) < 0 : open_and_inside_out(mesh))

@@ -2,6 +2,8 @@
 
 #include "bake/messages.hpp"
 
+#include <set>
+
 namespace frontalis
 {
 
@@ -88,17 +90,55 @@ const PreparedSurface& named_surface(const PreparedSurfaces& surfaces, const std
   throw Error(place + ": there is no surface '" + name + "'");
 }
 
+namespace
+{
+
+/// The surfaces that a bake needs: all but parts of heads that nothing in the scene names.
+std::vector<const Surface*> needed_surfaces(const Scene& scene)
+{
+  std::set<std::string> named{ scene.skin.surface };
+  const auto add = [&](const std::vector<std::string>& names) { named.insert(names.begin(), names.end()); };
+  for (const Volume& v : scene.volumes)
+  {
+    for (const auto* names : { &v.closed_by, &v.inside, &v.outside, &v.without, &v.slits })
+      add(*names);
+    add({ v.within });
+  }
+  for (const SceneConstraint& constraint : scene.constraints)
+  {
+    add(constraint.surfaces);
+    add({ constraint.on });
+  }
+  for (const SceneMaterial& material : scene.materials)
+    add({ material.along });
+  for (const Layer& layer : scene.layers)
+    add({ layer.surface });
+  for (const SceneMuscle& muscle : scene.muscles)
+    add({ muscle.origin.surface, muscle.insertion.surface });
+  for (const SceneLoad& load : scene.loads)
+    add({ load.surface });
+  std::vector<const Surface*> needed;
+  for (const Surface& surface : scene.surfaces)
+    if (!surface.shape || !surface.shape->head || named.count(surface.name) > 0)
+      needed.push_back(&surface);
+  return needed;
+}
+
+}  // namespace
+
 PreparedSurfaces prepare_surfaces(const Scene& scene, BakeMonitor& monitor)
 {
-  PreparedSurfaces prepared(scene.surfaces.size());
-  std::vector<LoadedSurface> loaded(scene.surfaces.size());
-  parallel_for(monitor, scene.surfaces.size(), 1,
+  const std::vector<const Surface*> needed = needed_surfaces(scene);
+  const double voxel = to_vector(scene.accuracy.voxel).minCoeff();
+  PreparedSurfaces prepared(needed.size());
+  std::vector<LoadedSurface> loaded(needed.size());
+  parallel_for(monitor, needed.size(), 1,
                [&](std::size_t s)
                {
-                 const Surface& surface = scene.surfaces[s];
+                 const Surface& surface = *needed[s];
                  try
                  {
-                   loaded[s] = load_surface(surface, scene.unit);
+                   loaded[s] = load_surface(surface, scene.unit, voxel);
                  }
                  catch (const Error& error)
                  {

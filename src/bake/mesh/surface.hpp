@@ -48,8 +48,8 @@ private:
 
 using PreparedSurfaces = std::vector<std::unique_ptr<PreparedSurface>>;
 
-/// Loads or makes every surface of the scene, in the scene's order, and reports repairs. Throws Error naming the
-/// surface and its fault.
+/// Loads or makes the scene's surfaces in its order, without parts of heads that nothing in it names, and reports
+/// repairs. Throws Error naming the surface and its fault.
 PreparedSurfaces prepare_surfaces(const Scene& scene, BakeMonitor& monitor);
 
 /// The surface called `name`. If there is none, throws Error with a message that begins with `place`.
@@ -63,8 +63,13 @@ TriangleMesh join_surfaces(const std::vector<const PreparedSurface*>& parts);
 /// Reads a mesh file of any format known to assimp, with coordinates in `unit` [m]. Throws Error naming the file.
 TriangleMesh import_mesh(const std::string& file, double unit);
 
-/// Closed mesh, with outward normals, of a built-in shape other than the forehead. Throws Error on impossible sizes.
+/// Closed mesh, with outward normals, of a built-in shape whose kind needs no other surface or template (box to torus).
+/// Throws Error on impossible sizes.
 TriangleMesh make_shape(const Shape& shape);
+
+/// Closed mesh of a shape of the kind `offset`, with edges of about `shape.edge` [m] (0: 1.75 mm): the points inside
+/// `above` that lie at the depths of the shape below it. Throws Error if `above` is open or less deep than asked for.
+TriangleMesh make_offset(const Shape& shape, const TriangleMesh& above);
 
 struct LoadedSurface
 {
@@ -75,7 +80,7 @@ struct LoadedSurface
 /// Makes or reads a surface and makes the repairs that do not change its shape. Messages give positions in the length
 /// unit `unit` [m]. Throws Error, with position and remedy, if no triangle has an area, an odd number of triangles meet
 /// at an edge, a closed surface encloses nothing, or a surface passes through itself. Holes are allowed here;
-/// check_openings() refuses those that do harm.
-LoadedSurface load_surface(const Surface& surface, double unit);
+/// check_openings() refuses those that do harm. `voxel` [m]: a generated forehead has no longer edges.
+LoadedSurface load_surface(const Surface& surface, double unit, double voxel = 1);
 
 }  // namespace frontalis

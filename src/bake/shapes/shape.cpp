@@ -141,6 +141,8 @@ TriangleMesh make_shape(const Shape& shape)
       return torus(shape, shape.edge > 0 ? shape.edge : shape.minor_radius / 3);
     case Shape::Kind::forehead:
     case Shape::Kind::head:
+    case Shape::Kind::muscle:
+    case Shape::Kind::offset:
       break;
   }
   throw Error("no mesh can be made of this shape");

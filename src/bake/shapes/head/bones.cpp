@@ -1,7 +1,5 @@
 #include "bake/shapes/head/head.hpp"
 
-#include <Eigen/Dense>
-
 namespace frontalis
 {
 namespace
@@ -21,15 +19,16 @@ HeadBones::HeadBones(const HeadTemplate& head, const TriangleTree& skin, double 
       bones_(head.bones.begin(), head.bones.end()),
       bodies_(head.bodies.begin(), head.bodies.end())
 {
+  std::vector<Vector3d> places;
   std::vector<double> value;
   const auto add = [&](Vector3d p, double v)
   {
-    centres_.push_back(p);
+    places.push_back(p);
     value.push_back(v);
     if (std::abs(p[1]) < 1e-6)
       return;
     p[1] = -p[1];
-    centres_.push_back(p);
+    places.push_back(p);
     value.push_back(v);
   };
   for (const auto& site : head.depths)
@@ -52,31 +51,7 @@ HeadBones::HeadBones(const HeadTemplate& head, const TriangleTree& skin, double 
     add(bone - slope_distance * inward, slope_distance);
     add(bone + slope_distance * inward, -slope_distance);
   }
-  // Biharmonic radial basis functions with a linear polynomial (Carr et al., SIGGRAPH 2001).
-  const auto n = static_cast<Eigen::Index>(centres_.size());
-  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(n + 4, n + 4);
-  Eigen::VectorXd b = Eigen::VectorXd::Zero(n + 4);
-  for (Eigen::Index i = 0; i < n; ++i)
-  {
-    for (Eigen::Index j = 0; j < n; ++j)
-      a(i, j) = (centres_[i] - centres_[j]).norm();
-    a(i, i) -= smoothing;
-    a(i, n) = a(n, i) = 1;
-    for (int c = 0; c < 3; ++c)
-      a(i, n + 1 + c) = a(n + 1 + c, i) = centres_[i][c];
-    b[i] = value[i];
-  }
-  const Eigen::VectorXd x = a.partialPivLu().solve(b);
-  weights_.assign(x.data(), x.data() + n);
-  linear_ = x.tail<4>();
-}
-
-double HeadBones::hull(const Vector3d& p) const
-{
-  double sum = linear_[0] + linear_.tail<3>().dot(p);
-  for (std::size_t i = 0; i < centres_.size(); ++i)
-    sum += weights_[i] * (p - centres_[i]).norm();
-  return sum;
+  hull_.emplace(std::move(places), value, RadialField::Polynomial::linear, smoothing);
 }
 
 HeadBones::Bone::Bone(const std::vector<HeadTemplate::BoneStep>& from)

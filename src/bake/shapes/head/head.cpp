@@ -1,5 +1,5 @@
 #include "bake/shapes/head/head.hpp"
-#include "bake/shapes/head/muscle_net.hpp"
+#include "bake/shapes/muscle_net.hpp"
 
 #include "bake/messages.hpp"
 #include "bake/mesh/surface.hpp"
@@ -138,7 +138,7 @@ TriangleMesh Head::bone(const std::string& name, double edge) const
   // bones lie inside the skin, so that the skin's box encloses them
   Box half = bounding_box(default_skin_);
   half.min()[1] = 0;
-  TriangleMesh mesh = isosurface([&](const Vector3d& p) { return bones_->part(name, p); }, half, edge);
+  TriangleMesh mesh = isosurface([&](const Vector3d& p) { return bones_->part(name, p); }, half, edge, true);
   for (Vector3& p : mesh.vertices)
   {
     const bool middle = p[1] == 0;

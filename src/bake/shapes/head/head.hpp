@@ -3,6 +3,8 @@
 #include "bake/mesh/subdivide.hpp"
 #include "bake/mesh/triangle_tree.hpp"
 #include "bake/shapes/head/solids.hpp"
+#include "bake/shapes/isosurface.hpp"
+#include "bake/shapes/radial_field.hpp"
 #include "frontalis/scene/head_template.hpp"
 #include "frontalis/scene/tissue.hpp"
 
@@ -37,7 +39,7 @@ public:
   HeadBones(const HeadTemplate& head, const TriangleTree& skin, double tissue = 1);
 
   /// Signed distance from the hull: the outer surface of skull, teeth and mandible, with nose and eye openings closed.
-  double hull(const Vector3d& p) const;
+  double hull(const Vector3d& p) const { return (*hull_)(p); }
   bool has(const std::string& name) const { return bones_.count(name) + bodies_.count(name) > 0; }
   double part(const std::string& name, const Vector3d& p) const;
   /// Signed distance from the union of all bones and eyeballs.
@@ -61,15 +63,8 @@ private:
   Vector3d eye_;
   double eye_radius_;
   std::map<std::string, Bone> bones_, bodies_;
-  std::vector<Vector3d> centres_;
-  std::vector<double> weights_;
-  Eigen::Vector4d linear_{ 0, 0, 0, 0 };
+  std::optional<RadialField> hull_;
 };
-
-/// Triangles of the surface f = 0, for an f that is symmetric in y and negative inside; their normals point outwards.
-/// The surface is found by marching tetrahedra with cells of `edge` [m] in the box `half`, whose lower y is 0, and
-/// mirrored.
-TriangleMesh isosurface(const std::function<double(const Vector3d&)>& f, const Box& half, double edge);
 
 /// The head of a template with given dimensions. All parts are made for the default head and moved by one warp, so that
 /// they fit together.

@@ -1,4 +1,6 @@
-#include "bake/shapes/head/head.hpp"
+#include "bake/shapes/isosurface.hpp"
+
+#include <map>
 
 namespace frontalis
 {
@@ -14,11 +16,12 @@ constexpr int tetrahedra[6][4] = { { 0, 1, 3, 7 }, { 0, 3, 2, 7 }, { 0, 2, 6, 7 
 class Marching
 {
 public:
-  Marching(const std::function<double(const Vector3d&)>& f, const Box& half, double edge)
-      : origin_(half.min()), edge_(edge)
+  /// `half`: the side of the box at the lowest y is a plane of symmetry, through which the surface goes on.
+  Marching(const std::function<double(const Vector3d&)>& f, const Box& box, double edge, bool half)
+      : origin_(box.min()), edge_(edge), half_(half)
   {
     for (int a = 0; a < 3; ++a)
-      size_[a] = std::max(2, static_cast<int>(std::ceil(half.sizes()[a] / edge)) + 1);
+      size_[a] = std::max(2, static_cast<int>(std::ceil(box.sizes()[a] / edge)) + 1);
     values_.resize(static_cast<std::size_t>(size_[0]) * size_[1] * size_[2]);
     for (int k = 0; k < size_[2]; k += block)
       for (int j = 0; j < size_[1]; j += block)
@@ -73,7 +76,8 @@ private:
       for (int j = first[1]; j < std::min(size_[1], first[1] + block); ++j)
         for (int i = first[0]; i < std::min(size_[0], first[0] + block); ++i)
         {
-          const bool border = i == 0 || i == size_[0] - 1 || j == size_[1] - 1 || k == 0 || k == size_[2] - 1;
+          const bool border =
+              i == 0 || i == size_[0] - 1 || (j == 0 && !half_) || j == size_[1] - 1 || k == 0 || k == size_[2] - 1;
           const double value = near ? f(at({ i, j, k })) : middle;
           // Positive values close the surface at the border. Small values are raised, so that no grid point lies on the
           // surface.
@@ -154,6 +158,7 @@ private:
 
   Vector3d origin_;
   double edge_;
+  bool half_;
   Index size_{};
   std::vector<double> values_;
   std::map<std::size_t, Vector3d> snapped_;  ///< positions of grid points that were moved onto the surface
@@ -161,13 +166,16 @@ private:
 
 }  // namespace
 
-TriangleMesh isosurface(const std::function<double(const Vector3d&)>& f, const Box& half, double edge)
+TriangleMesh isosurface(const std::function<double(const Vector3d&)>& f, const Box& box, double edge, bool mirrored)
 {
-  TriangleMesh mesh = Marching(f, half, edge).surface();
-  TriangleMesh image = mesh;
-  for (Vector3& p : image.vertices)
-    p[1] = p[1] == 0 ? 0 : -p[1];
-  append(mesh, image, true);
+  TriangleMesh mesh = Marching(f, box, edge, mirrored).surface();
+  if (mirrored)
+  {
+    TriangleMesh image = mesh;
+    for (Vector3& p : image.vertices)
+      p[1] = p[1] == 0 ? 0 : -p[1];
+    append(mesh, image, true);
+  }
   join_vertices(mesh);
   // Drops vertices that no triangle uses.
   return keep_triangles(mesh, std::vector<bool>(mesh.triangles.size(), true));

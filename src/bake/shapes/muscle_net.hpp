@@ -1,0 +1,47 @@
+#pragma once
+
+#include "bake/fibres/nurbs_volume.hpp"
+#include "bake/mesh/surface_mesh.hpp"
+#include "frontalis/scene/geometry.hpp"
+#include "frontalis/scene/tissue.hpp"
+
+#include <functional>
+
+namespace frontalis
+{
+
+/// The middle surface of a muscle through curves. The curves lie across the fibres, from the origin to the insertion,
+/// or are loops along them, from the inner to the outer one (a ring). Positions on it are given by the shares u of the
+/// way along the fibres and s of the way across them, each from 0 to 1.
+class MuscleSheet
+{
+public:
+  MuscleSheet(std::vector<std::vector<Vector3>> curves, bool ring) : curves_(std::move(curves)), ring_(ring) {}
+
+  Vector3d at(double u, double s) const;
+  /// Interpolates values that belong to the curves, of which there is one per curve.
+  double between(const std::vector<double>& values, double u, double s) const;
+  /// Position between the curves, from 0 to the number of curves - 1.
+  double position(double u, double s) const;
+  /// Thickness divided by the mean thickness in the middle: edges and ends are thin.
+  double relative_thickness(double u, double s) const;
+  /// The control net whose points on both sides of the middle surface are `sides(u, s)`, at most 5 mm apart along the
+  /// surface, and at least as many along and across the fibres as given.
+  ControlNet net(const std::function<std::array<Vector3d, 2>(double u, double s)>& sides, int least_along,
+                 int least_across) const;
+
+private:
+  std::vector<std::vector<Vector3>> curves_;
+  bool ring_;
+};
+
+/// The control net of a shape of the kind `muscle`.
+ControlNet curved_muscle_net(const Shape& shape);
+
+/// The NURBS volume of a control net.
+NurbsVolume volume_of(const ControlNet& net);
+
+/// Closed surface of the NURBS volume of a control net, with edges of about `edge` [m].
+TriangleMesh net_surface(const ControlNet& net, double edge);
+
+}  // namespace frontalis

@@ -1,0 +1,41 @@
+#include "bake/mesh/surface.hpp"
+#include "bake/messages.hpp"
+#include "bake/shapes/isosurface.hpp"
+#include "bake/shapes/radial_field.hpp"
+
+namespace frontalis
+{
+
+TriangleMesh make_offset(const Shape& shape, const TriangleMesh& above)
+{
+  constexpr double default_edge = 1.75e-3;  // [m]
+  const PreparedSurface surface("above", above);
+  if (!surface.closed())
+    throw Error("offset: the surface in 'below' has a border; it must be closed");
+  std::vector<Vector3d> places;
+  std::vector<double> depths;
+  for (const auto& site : shape.depths)
+  {
+    const Vector3d place = surface.tree().closest(to_vector(site.at)).point;
+    for (const Vector3d& earlier : places)
+      if ((place - earlier).norm() < 1e-6)
+        throw failure("offset: two of its depths are those of one place, number {} is the second", places.size() + 1);
+    places.push_back(place);
+    depths.push_back(site.depth);
+  }
+  const RadialField table(places, depths, RadialField::Polynomial::constant, 0);
+  // Between and beyond its places the table is not exceeded.
+  const auto [least, most] = std::minmax_element(depths.begin(), depths.end());
+  const auto depth_at = [&](const Vector3d& p) { return std::min(*most, std::max(*least, table(p))); };
+  const auto f = [&](const Vector3d& p)
+  {
+    const ClosestPoint closest = surface.tree().closest(p);
+    return surface.signed_distance(p, closest) + depth_at(closest.point);
+  };
+  TriangleMesh mesh = isosurface(f, surface.box(), shape.edge > 0 ? shape.edge : default_edge, false);
+  if (mesh.triangles.empty())
+    throw failure("offset: no point is as deep as the depths ask for, {:.3g} to {:.3g} mm", 1e3 * *least, 1e3 * *most);
+  return mesh;
+}
+
+}  // namespace frontalis
