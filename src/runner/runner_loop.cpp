@@ -1,6 +1,7 @@
 #include "frontalis/error.hpp"
 #include "frontalis/runner/face_frame.hpp"
 #include "frontalis/runner/named_controls.hpp"
+#include "frontalis/solver/damping.hpp"
 #include "frontalis/solver/rigid_motion.hpp"
 #include "runner/runner_implementation.hpp"
 
@@ -55,6 +56,7 @@ void Runner::Implementation::advance(double seconds, const Controls& controls)
 {
   try
   {
+    set_damping(*solver, damping);
     if (guard)
       guard->advance(seconds / model->time_scaling, controls);
     else

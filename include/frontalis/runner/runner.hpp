@@ -97,6 +97,10 @@ public:
   /// out of range.
   void set_frame_rate(double rate);
 
+  /// Changes the damping (frontalis/solver/damping.hpp) between two time steps; below 0: that of the model. Throws an
+  /// Error if it is not finite.
+  void set_damping(double damping);
+
   void pause(bool paused);
   bool paused() const;
   /// Puts the tissue and the bones back to rest and sets all activations and the time to 0. Clears a failure, and ends
