@@ -56,7 +56,7 @@ void Runner::Implementation::advance(double seconds, const Controls& controls)
 {
   try
   {
-    set_damping(*solver, damping);
+    frontalis::set_damping(*solver, damping);
     if (guard)
       guard->advance(seconds / model->time_scaling, controls);
     else
