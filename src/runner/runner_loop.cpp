@@ -207,7 +207,7 @@ void Runner::Implementation::serve_step(StepRequest& request)
     advance(seconds, interpolate(begin, end, std::min(1.0, done / request.seconds)));
     request.error = frame.failure;
     const std::lock_guard<std::mutex> lock(mutex);
-    if (stop || reset_wanted || cancel_wanted)
+    if (stop || reset_wanted || cancel_wanted || (settings.ends_steps && settings.ends_steps()))
       request.error = ended_early;
     else if (switch_request != nullptr)
       serve_switch(*switch_request);

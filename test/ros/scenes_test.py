@@ -24,6 +24,8 @@ class Scenes(unittest.TestCase):
     def setUp(self):
         self.face = Face()
         self.face.wait_until_ready()
+        self.assertTrue(self.face.reset().success)
+        self.face.wait_for_frame(lambda: self.face.state.time < 1, "the reset")
         self.load = rospy.ServiceProxy("/face/load_scene", LoadScene)
 
     def test_1_a_bad_scene_changes_nothing(self):
@@ -74,7 +76,6 @@ class Scenes(unittest.TestCase):
         clouds, markers = [], []
         rospy.Subscriber("/face/skin_field", PointCloud2, clouds.append)
         rospy.Subscriber("/face/skin", Marker, markers.append)
-        self.assertTrue(self.face.reset().success)
         self.face.command(frontalis_left=0.9, frontalis_right=0)
 
         def largest():
@@ -86,7 +87,7 @@ class Scenes(unittest.TestCase):
         wait(lambda: 0.02 < largest() < 1, "strain")
         # one half of the bar is coloured like full contraction, the other like none
         config.update_configuration({"skin_colour": "activation"})
-        wait(lambda: any(c.r > 2 * c.b for c in markers[-1].colors) and any(c.b > 2 * c.r for c in markers[-1].colors), "red and blue")
+        wait(lambda: {c.r > 1.3 * c.b for c in markers[-1].colors} == {True, False}, "red and blue")
         config.update_configuration({"colour_range": 100})
         wait(lambda: all(c.b > c.r for c in markers[-1].colors), "blue alone")
         config.update_configuration({"skin_colour": "skin", "colour_range": 0, "real_time_factor_warning": 1000})
@@ -96,8 +97,6 @@ class Scenes(unittest.TestCase):
 
     def test_3_damping_changes_while_it_runs(self):
         config = Client("/face", timeout=LIMIT)
-        self.assertTrue(self.face.reset().success)
-        wait(lambda: self.face.state.time < 1, "the reset")
         rest = self.face.height("tip")
         config.update_configuration({"damping": 1e9})
         self.face.command(frontalis_left=0.9, frontalis_right=0.9)

@@ -4,6 +4,7 @@ it asserts no time, since that depends on the load of the machine.
 """
 
 import os
+import signal
 import subprocess
 import tempfile
 import threading
@@ -50,7 +51,7 @@ class Node:
         """Ends the process. Returns the seconds that took, and its return code."""
         started = self.programs()
         begin = time.monotonic()
-        self.process.terminate()
+        self.process.send_signal(signal.SIGINT)
         code = self.process.wait(LIMIT)
         seconds = time.monotonic() - begin
         wait(lambda: not any(os.path.exists("/proc/" + number) for number in started), "the end of its programs")

@@ -60,6 +60,8 @@ struct RunnerSettings
   std::function<bool()> wants_displacements{};
   /// Called once per frame in the runner's thread. If it is not set or returns false, forces on bones are not computed.
   std::function<bool()> wants_bone_forces{};
+  /// Called after each slice of a step() in the runner's thread. If it returns true, the step ends as by cancel_step().
+  std::function<bool()> ends_steps{};
 };
 
 /// A face that moves by itself: it owns the solver and a thread that steps it and hands out frames. All functions may
