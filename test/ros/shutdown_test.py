@@ -71,30 +71,35 @@ def call_in_vain(service, *arguments):
 
 
 class Shutdown(unittest.TestCase):
+    def start(self, *arguments):
+        node = Node(*arguments)
+        self.addCleanup(node.process.kill)
+        return node
+
     def end(self, node, what):
         seconds, code = node.end()
         print("a face that %s ended after %.2f s" % (what, seconds))
         self.assertEqual(code, 0)
 
     def test_while_it_bakes(self):
-        node = Node("baking", LARGE)
+        node = self.start("baking", LARGE)
         wait(node.programs, "the bake")
         self.end(node, "bakes")
 
     def test_while_it_runs(self):
-        node = Node("running", SMALL, "_demo:=true")
+        node = self.start("running", SMALL, "_demo:=true")
         node.face.wait_until_ready()
         self.end(node, "runs")
 
     def test_in_a_long_step(self):
-        node = Node("stepping", SMALL, "_pace:=lock_step")
+        node = self.start("stepping", SMALL, "_pace:=lock_step")
         node.face.wait_until_ready()
         call_in_vain(node.face.step, 1e6)
         wait(lambda: "another step" in node.face.step(1e-9).message, "the step under way")
         self.end(node, "makes a long step")
 
     def test_while_it_fits(self):
-        node = Node("fitting", SMALL)
+        node = self.start("fitting", SMALL)
         node.face.wait_until_ready()
         client = actionlib.SimpleActionClient("/fitting/fit_activation", FitActivationAction)
         self.assertTrue(client.wait_for_server(rospy.Duration(LIMIT)))
@@ -103,7 +108,7 @@ class Shutdown(unittest.TestCase):
         self.end(node, "fits")
 
     def test_while_it_loads_another_scene(self):
-        node = Node("loading", SMALL)
+        node = self.start("loading", SMALL)
         node.face.wait_until_ready()
         call_in_vain(rospy.ServiceProxy("/loading/load_scene", LoadScene), LARGE, "", "")
         wait(node.programs, "the bake of the other scene")
