@@ -130,9 +130,10 @@ class Face:
         rospy.Subscriber("/face/caption", Marker, lambda message: setattr(self, "caption", message.text))
 
     def is_seen(self):
-        """Whether rviz has subscribed to the skin."""
+        """Whether rviz has subscribed to what it draws."""
+        drawn = ["/face/" + topic for topic in ("skin", "skin_points", "muscles", "landmarks", "bodies", "eyes")]
         subscribers = dict(self.master.getSystemState()[1])
-        return any("rviz" in node for node in subscribers.get("/face/skin", []))
+        return any("rviz" in node for topic in drawn for node in subscribers.get(topic, []))
 
     def express(self, name):
         """Commands an expression and steps until the face holds it. Returns the simulated time [s]."""
