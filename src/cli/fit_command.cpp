@@ -20,7 +20,7 @@ struct FitOptions
 {
   ModelSource source;
   std::string request, track;
-  std::string json, activations;
+  std::string json, activations, plot;
   FitSettings settings;
 };
 
@@ -70,6 +70,8 @@ void fit_landmarks(FitOptions& options)
 
 void retarget_track(FitOptions& options)
 {
+  // The options are checked before the simulations, which take minutes.
+  const std::string plot = plot_path(options.plot);
   const FitRequest request = options.request.empty() ? FitRequest() : read_fit_request(options.request);
   if (!request.targets.empty())
     throw Error(options.request + ": has targets; the track has them here, so only unknowns and deviation are allowed");
@@ -84,6 +86,8 @@ void retarget_track(FitOptions& options)
   if (!result.pass_errors.empty())
     fmt::print("error after each simulation, root mean square: {}\n", in_millimetres(result.pass_errors));
   write_text(options.activations, activations_of(result));
+  if (!plot.empty())
+    write_plot(retarget_plot(result), plot);
 }
 
 struct CalibrationOptions : FitOptions
@@ -148,6 +152,7 @@ void add_retarget_command(CLI::App& app)
       ->required();
   command->add_option("-o,--activations", options->activations, "table to write (CSV)")->required();
   command->add_option("--unknowns", options->request, "file with unknowns and deviation, as that of fit --target");
+  command->add_option("--plot", options->plot, "draw the errors over time: FILE.png, and FILE.svg beside it");
   options->settings.runs = 3;
   command->get_option("--runs")->description("simulations of the whole track that correct the answer (3; 0: none)");
   command->callback([options] { retarget_track(*options); });

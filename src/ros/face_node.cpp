@@ -123,6 +123,8 @@ void FaceNode::replace_face(const FaceParameters& parameters)
   RunnerSettings settings = parameters.runner;
   settings.wanted_field = [this] { return publisher_.wanted_field(); };
   settings.wants_displacements = [this] { return publisher_.shows_muscles(); };
+  // ROS waits for the callback of a long ~step before it lets this object be destroyed.
+  settings.ends_steps = [this] { return stopping_ || ros::isShuttingDown(); };
   settings.wants_bone_forces = [this] { return publisher_.shows_bone_forces(); };
   const auto made =
       std::make_shared<Runner>(model, settings, [this, face](const Frame& frame) { on_frame(frame, face); });

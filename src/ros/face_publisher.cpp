@@ -21,6 +21,7 @@ constexpr double displacement_range = 10e-3;  // [m]
 constexpr double strain_range = 0.3;
 constexpr double stress_range = 20e3;  // [Pa]
 constexpr double line_range = 0.2e-3;  // [m]
+constexpr double activation_range = 1;
 
 const ros::WallDuration bodies_again(1);  // after the first frame
 
@@ -72,6 +73,7 @@ void FacePublisher::start(std::shared_ptr<const Model> model, const std::string&
   landmark_vertices_ = landmark_vertices(*model_);
   standard_landmarks_ = standard_landmarks(*model_);
   lines_ = std::make_unique<MuscleLines>(*model_);
+  skin_muscles_ = std::make_unique<SkinMuscles>(*model_);
   publish_bodies();
   bodies_due_ = ros::WallTime();
   shapes_ = body_shapes(*model_);
@@ -79,6 +81,12 @@ void FacePublisher::start(std::shared_ptr<const Model> model, const std::string&
   wrenches_.clear();
   for (const BodyShape& shape : shapes_)
   {
+    // Tissue does not touch a body that is only shown, such as the teeth.
+    if (shape.only_shown)
+    {
+      wrenches_.emplace_back();
+      continue;
+    }
     const bool named_like_bone =
         std::any_of(bones.begin(), bones.end(), [&](const BodyShape& bone) { return bone.name == shape.name; });
     wrenches_.emplace_back(handle_, "wrench/" + shape.name + (named_like_bone ? "_contact" : ""));
@@ -146,6 +154,11 @@ std::vector<float> FacePublisher::shown_values(const Frame& frame) const
   double full = displacement_range;
   if (colour_ == SkinColour::displacement)
     values = distances(frame.skin, rest_);
+  else if (colour_ == SkinColour::activation)
+  {
+    values = skin_muscles_->activation(frame.activation);
+    full = activation_range;
+  }
   else if (colour_ == SkinColour::field && frame.field.size() == frame.skin.vertices.size())
   {
     values = frame.field;

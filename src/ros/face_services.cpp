@@ -213,6 +213,7 @@ void FaceNode::apply_config(Runner& running, const FaceConfig& config)
   for (std::string word; words >> word;)
     off.insert(name_of(effect_from_name(word)));
   running.set_frame_rate(config.frame_rate);
+  running.set_damping(config.damping);
   // Effects that this configuration does not change are left alone: ~switch_effect may have switched them.
   for (const Effect effect : every_effect())
     if (!effects_of(running.model()).has(effect))

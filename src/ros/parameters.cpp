@@ -51,10 +51,11 @@ SkinColour skin_colour_from_name(const std::string& name)
 {
   for (const auto& [known, colour] : { std::pair{ "skin", SkinColour::skin },
                                        { "displacement", SkinColour::displacement },
+                                       { "activation", SkinColour::activation },
                                        { "field", SkinColour::field } })
     if (name == known)
       return colour;
-  throw Error(fmt::format("found '{}'; allowed are skin, displacement and field", name));
+  throw Error(fmt::format("found '{}'; allowed are skin, displacement, activation and field", name));
 }
 
 FaceParameters read_parameters(const ros::NodeHandle& private_handle)

@@ -1,12 +1,14 @@
 #!/usr/bin/python3
 """Takes pictures of a scene's face: at rest, in each of its expressions, and relaxed again; or at moments of its demo.
 
-usage: take_pictures.py SCENE FOLDER [at:=SECONDS,SECONDS,...] [panel:=true] [LAUNCH_ARGUMENT:=VALUE ...]
+usage: take_pictures.py SCENE FOLDER [at:=SECONDS,SECONDS,...] [panel:=true] [displays:=NAME,NAME,...]
+                        [LAUNCH_ARGUMENT:=VALUE ...]
 
 Launches SCENE.launch of this package in lock-step, with rviz full screen (with panel:=true: in a window with its
-panels), under Xvfb if there is no display. Moves the face by ~expression and ~step, so that each picture shows an exact
-simulated time, and prints the path of each picture and how far the landmarks moved. Needs the environment of the
-package's setup file, Xvfb and ImageMagick.
+panels), under Xvfb if there is no display. rviz shows the named displays of the scene's .rviz file, with _ for
+spaces, such as Skin_points; without names, those that are ticked there. Moves the face by ~expression and ~step, so
+that each picture shows an exact simulated time, and prints the path of each picture and how far the landmarks moved.
+Needs the environment of the package's setup file, Xvfb and ImageMagick.
 """
 
 import os
@@ -84,6 +86,26 @@ def save(picture, path):
     )
 
 
+def config_with(scene, names, folder):
+    """Writes a copy of the scene's .rviz file that shows the named displays only, and returns its path."""
+    import rospkg
+    import yaml
+
+    path = os.path.join(rospkg.RosPack().get_path("frontalis"), "config", scene + ".rviz")
+    with open(path, encoding="utf-8") as file:
+        config = yaml.safe_load(file)
+    displays = {display["Name"].replace(" ", "_"): display for display in config["Visualization Manager"]["Displays"]}
+    for name in names:
+        if name not in displays:
+            fail("%s has no display %s; it has %s" % (path, name, ", ".join(displays)))
+    for name, display in displays.items():
+        display["Enabled"] = display["Value"] = name in names
+    copy = os.path.join(folder, scene + ".rviz")
+    with open(copy, "w", encoding="utf-8") as file:
+        yaml.safe_dump(config, file)
+    return copy
+
+
 class Face:
     """The face /face. ROS is imported here, after the address of the master has been set."""
 
@@ -108,9 +130,10 @@ class Face:
         rospy.Subscriber("/face/caption", Marker, lambda message: setattr(self, "caption", message.text))
 
     def is_seen(self):
-        """Whether rviz has subscribed to the skin."""
+        """Whether rviz has subscribed to what it draws."""
+        drawn = ["/face/" + topic for topic in ("skin", "skin_points", "muscles", "landmarks", "bodies", "eyes")]
         subscribers = dict(self.master.getSystemState()[1])
-        return any("rviz" in node for node in subscribers.get("/face/skin", []))
+        return any("rviz" in node for topic in drawn for node in subscribers.get(topic, []))
 
     def express(self, name):
         """Commands an expression and steps until the face holds it. Returns the simulated time [s]."""
@@ -204,10 +227,13 @@ def main():
         sys.exit(2)
     scene, folder = sys.argv[1], os.path.abspath(sys.argv[2])
     moments = [float(t) for a in sys.argv[3:] if a.startswith("at:=") for t in a[4:].split(",")]
-    arguments = [a for a in sys.argv[3:] if not a.startswith(("at:=", "panel:="))]
+    displays = [a[10:].split(",") for a in sys.argv[3:] if a.startswith("displays:=")]
+    arguments = [a for a in sys.argv[3:] if not a.startswith(("at:=", "panel:=", "displays:="))]
     rviz_args = "" if "panel:=true" in sys.argv else "--fullscreen"
     enter_display()
     os.makedirs(folder, exist_ok=True)
+    if displays:
+        arguments.append("rviz_config:=" + config_with(scene, displays[0], folder))
 
     # software rendering, and a ROS master of its own so that no other nodes take part
     os.environ.setdefault("LIBGL_ALWAYS_SOFTWARE", "1")

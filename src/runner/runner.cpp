@@ -18,6 +18,7 @@ Runner::Runner(std::shared_ptr<const Model> model, const RunnerSettings& setting
   self_->model = std::move(model);
   self_->settings = settings;
   set_frame_rate(settings.frame_rate);
+  set_damping(-1);
   self_->on_frame = std::move(on_frame);
   self_->solver = make_solver(self_->model, settings.solver);
   if (settings.guard)
@@ -45,6 +46,13 @@ void Runner::set_frame_rate(double rate)
   if (!(found >= 0.1 && found <= 1000))
     throw Error(fmt::format("frame rate {} Hz: allowed is 0.1 to 1000", found));
   self_->frame_rate = found;
+}
+
+void Runner::set_damping(double damping)
+{
+  if (!std::isfinite(damping))
+    throw Error(fmt::format("damping {}: allowed are finite numbers; below 0: the model's", damping));
+  self_->damping = damping < 0 ? self_->model->damping : damping;
 }
 
 void Runner::set_activation(const std::map<std::string, double>& activation)

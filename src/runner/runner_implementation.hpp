@@ -22,6 +22,7 @@ struct Runner::Implementation
   std::shared_ptr<const Model> model;
   RunnerSettings settings;
   std::atomic<double> frame_rate{ 30 };  ///< [1/s] of wall time
+  std::atomic<double> damping{ 0 };      ///< [1/s]
   OnFrame on_frame;
   std::unique_ptr<Solver> solver;
   std::unique_ptr<Guard> guard;           ///< null: the motion is not checked

@@ -1,6 +1,7 @@
 #include "frontalis/error.hpp"
 #include "frontalis/runner/face_frame.hpp"
 #include "frontalis/runner/named_controls.hpp"
+#include "frontalis/solver/damping.hpp"
 #include "frontalis/solver/rigid_motion.hpp"
 #include "runner/runner_implementation.hpp"
 
@@ -55,6 +56,7 @@ void Runner::Implementation::advance(double seconds, const Controls& controls)
 {
   try
   {
+    frontalis::set_damping(*solver, damping);
     if (guard)
       guard->advance(seconds / model->time_scaling, controls);
     else
@@ -205,7 +207,7 @@ void Runner::Implementation::serve_step(StepRequest& request)
     advance(seconds, interpolate(begin, end, std::min(1.0, done / request.seconds)));
     request.error = frame.failure;
     const std::lock_guard<std::mutex> lock(mutex);
-    if (stop || reset_wanted || cancel_wanted)
+    if (stop || reset_wanted || cancel_wanted || (settings.ends_steps && settings.ends_steps()))
       request.error = ended_early;
     else if (switch_request != nullptr)
       serve_switch(*switch_request);

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
+#include <fstream>
 #include <map>
 #include <string>
 #include <vector>
@@ -180,9 +182,15 @@ TEST_F(Fit, follows_a_track)
   run({ "--activations", table, "--seconds", "0.6" });
   const std::string unknowns =
       folder.write("unknowns.yaml", "deviation: 0.02\nunknowns: [front_left, front_right, back]\n");
-  const auto result = run_program({ "retarget", model, folder / "known" + "/landmarks.csv", "--unknowns", unknowns,
-                                    "-o", folder / "found.csv", "--threads", "1" });
+  std::vector<std::string> arguments{ "retarget",           model,       folder / "known" + "/landmarks.csv",
+                                      "--unknowns",         unknowns,    "-o",
+                                      folder / "found.csv", "--threads", "1" };
+  const bool draws = std::system("command -v gnuplot >/dev/null 2>&1") == 0;
+  if (draws)
+    arguments.insert(arguments.end(), { "--plot", folder / "errors.png" });
+  const auto result = run_program(arguments);
   ASSERT_EQ(result.code, 0) << result.errors;
+  EXPECT_EQ(std::ifstream(folder / "errors.png").good(), draws);
   expect_contains(result.output, "error after each simulation");
   const std::string found = text_of(folder / "found.csv");
   expect_contains(found, "time,front_left,front_right,back\n");

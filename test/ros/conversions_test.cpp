@@ -1,6 +1,7 @@
 #include "frontalis/render/face_appearance.hpp"
 #include "frontalis/ros/conversions.hpp"
 #include "frontalis/ros/muscle_lines.hpp"
+#include "frontalis/ros/skin_muscles.hpp"
 #include "frontalis/solver/rigid_motion.hpp"
 
 #include "ros/marker_meshes.hpp"
@@ -321,6 +322,18 @@ TEST(Conversions, SkinThatIsNotFiniteOrNotWholeIsNotPublishable)
   SkinState skin = lifted(model, 0);
   skin.normals.pop_back();
   EXPECT_FALSE(is_publishable(skin, model));
+}
+
+TEST(SkinMuscles, MixesTheActivationsOfTheMusclesBelow)
+{
+  Model model = small_model();
+  model.fibre_begin = { 0, 2 };
+  model.fibre_muscle = { 0, 1 };
+  model.fibre_weight = { 0.6F, 0.2F };
+  const auto found = SkinMuscles(model).activation({ 1, 0.5F });
+  ASSERT_EQ(found.size(), 4U);
+  EXPECT_NEAR(found[0], 0.875, 1e-6) << "three quarters of the one muscle and one of the other";
+  EXPECT_EQ(found[2], 0) << "a vertex on the far border has no voxel below it";
 }
 
 TEST(Shading, LightComesFromAboveAndHollowsAreDarker)

@@ -5,6 +5,7 @@ import unittest
 
 import rospy
 import rostest
+from visualization_msgs.msg import Marker
 
 from face import Face, wait
 
@@ -35,6 +36,12 @@ class Live(unittest.TestCase):
         wait(lambda: self.face.state.activation[0] > 0.4, "contraction")
         wait(lambda: self.face.state.activation[0] < 0.1, "relaxation")
         wait(lambda: self.face.state.activation[0] > 0.4, "contraction in the second round")
+
+    def test_2_caption_names_the_expression_of_the_demo(self):
+        captions = []
+        rospy.Subscriber("/face/caption", Marker, lambda message: captions.append(message.text))
+        for text in ("shorten", "relax"):
+            wait(lambda text=text: any(caption.startswith(text) for caption in captions), "the caption " + text)
 
     def test_3_pause_stops_the_clock_and_goes_on(self):
         self.assertTrue(self.face.pause(True).success)

@@ -3,6 +3,7 @@
 
 import math
 import os
+import struct
 import unittest
 
 import rospkg
@@ -11,6 +12,7 @@ import rostest
 from dynamic_reconfigure.client import Client
 from frontalis.srv import LoadScene, Probe
 from geometry_msgs.msg import Point
+from sensor_msgs.msg import PointCloud2
 from visualization_msgs.msg import Marker, MarkerArray
 
 from face import LIMIT, Face, wait
@@ -22,6 +24,8 @@ class Scenes(unittest.TestCase):
     def setUp(self):
         self.face = Face()
         self.face.wait_until_ready()
+        self.assertTrue(self.face.reset().success)
+        self.face.wait_for_frame(lambda: self.face.state.time < 1, "the reset")
         self.load = rospy.ServiceProxy("/face/load_scene", LoadScene)
 
     def test_1_a_bad_scene_changes_nothing(self):
@@ -66,6 +70,41 @@ class Scenes(unittest.TestCase):
         running = self.face.switch_effect("", False)
         self.assertTrue(dict(zip(running.name, running.running))["contraction"])
         listener.unregister()
+
+    def test_3_fields_colours_and_limits_change_while_it_runs(self):
+        config = Client("/face", timeout=LIMIT)
+        clouds, markers = [], []
+        rospy.Subscriber("/face/skin_field", PointCloud2, clouds.append)
+        rospy.Subscriber("/face/skin", Marker, markers.append)
+        self.face.command(frontalis_left=0.9, frontalis_right=0)
+
+        def largest():
+            return max(struct.unpack_from("<7f", clouds[-1].data, v * clouds[-1].point_step)[6] for v in range(clouds[-1].width))
+
+        config.update_configuration({"skin_field": "stress"})
+        wait(lambda: clouds and largest() > 1e3, "stress [Pa]")
+        config.update_configuration({"skin_field": "strain"})
+        wait(lambda: 0.02 < largest() < 1, "strain")
+        # one half of the bar is coloured like full contraction, the other like none
+        config.update_configuration({"skin_colour": "activation"})
+        wait(lambda: {c.r > 1.3 * c.b for c in markers[-1].colors} == {True, False}, "red and blue")
+        config.update_configuration({"colour_range": 100})
+        wait(lambda: all(c.b > c.r for c in markers[-1].colors), "blue alone")
+        config.update_configuration({"skin_colour": "skin", "colour_range": 0, "real_time_factor_warning": 1000})
+        wait(lambda: "too slow" in self.face.diagnostics[0].message, "a warning")
+        config.update_configuration({"real_time_factor_warning": 0})
+        wait(lambda: "too slow" not in self.face.diagnostics[0].message, "the end of the warning")
+
+    def test_3_damping_changes_while_it_runs(self):
+        config = Client("/face", timeout=LIMIT)
+        rest = self.face.height("tip")
+        config.update_configuration({"damping": 1e9})
+        self.face.command(frontalis_left=0.9, frontalis_right=0.9)
+        wait(lambda: min(self.face.state.activation) > 0.89, "the command")
+        self.face.wait_for_states(5)
+        self.assertLess(self.face.height("tip") - rest, 5e-4)
+        config.update_configuration({"damping": -1})
+        wait(lambda: self.face.height("tip") - rest > 1e-3, "the tip a millimetre up")
 
     def test_4_probe_reads_the_skin(self):
         probe = rospy.ServiceProxy("/face/probe", Probe)

@@ -111,6 +111,17 @@ private:
 
 }  // namespace
 
+TEST(Runner, DampingChangesWhileTheFaceRuns)
+{
+  Runner runner(bar(), settings(Pace::lock_step), {});
+  runner.set_expression("pull");
+  runner.set_damping(1e8);
+  EXPECT_NEAR(tip(runner.step(0.02)), 6e-3, 1e-4) << "so much damping leaves the bar where it is";
+  runner.set_damping(-1);
+  EXPECT_LT(tip(runner.step(0.1)), 5.5e-3) << "with the damping of the model";
+  EXPECT_THROW(runner.set_damping(std::nan("")), Error);
+}
+
 TEST(Runner, LockStepAdvancesExactlyAndComesBack)
 {
   Runner runner(bar(), settings(Pace::lock_step), {});

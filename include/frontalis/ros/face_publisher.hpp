@@ -3,6 +3,7 @@
 #include "frontalis/ros/conversions.hpp"
 #include "frontalis/ros/muscle_lines.hpp"
 #include "frontalis/ros/parameters.hpp"
+#include "frontalis/ros/skin_muscles.hpp"
 
 #include <frontalis/Probe.h>
 #include <geometry_msgs/WrenchStamped.h>
@@ -70,6 +71,7 @@ private:
   template <typename Message>
   struct Topic
   {
+    Topic() = default;  ///< without a topic: publishes nothing
     Topic(ros::NodeHandle& handle, const std::string& name) : publisher(handle.advertise<Message>(name, 1)) {}
 
     /// Publishes a message that `fill` fills, if the topic has subscribers. If a subscriber in this process still holds
@@ -77,7 +79,7 @@ private:
     template <typename Fill>
     void publish(const std::string& frame, const ros::Time& stamp, const Fill& fill);
 
-    ros::Publisher publisher;
+    ros::Publisher publisher{};
     boost::shared_ptr<Message> message{};
   };
 
@@ -109,6 +111,7 @@ private:
   std::vector<std::size_t> landmark_vertices_;
   std::vector<std::size_t> standard_landmarks_;
   std::unique_ptr<MuscleLines> lines_;
+  std::unique_ptr<SkinMuscles> skin_muscles_;
   std::atomic<SkinColour> colour_{ SkinColour::skin };
   std::atomic<SkinField> shown_field_{ SkinField::strain };
   double colour_range_ = 0;

@@ -35,6 +35,7 @@ enum class SkinColour
 {
   skin,
   displacement,  ///< distance from rest [m]
+  activation,    ///< that of the muscles below the skin (SkinMuscles)
   field          ///< FaceParameters::skin_field
 };
 

@@ -60,6 +60,8 @@ struct RunnerSettings
   std::function<bool()> wants_displacements{};
   /// Called once per frame in the runner's thread. If it is not set or returns false, forces on bones are not computed.
   std::function<bool()> wants_bone_forces{};
+  /// Called after each slice of a step() in the runner's thread. If it returns true, the step ends as by cancel_step().
+  std::function<bool()> ends_steps{};
 };
 
 /// A face that moves by itself: it owns the solver and a thread that steps it and hands out frames. All functions may
@@ -96,6 +98,10 @@ public:
   /// Changes the number of frames per second of wall time, 0.1 to 1000; 0: that of the model. Throws an Error if it is
   /// out of range.
   void set_frame_rate(double rate);
+
+  /// Changes the damping (frontalis/solver/damping.hpp) between two time steps; below 0: that of the model. Throws an
+  /// Error if it is not finite.
+  void set_damping(double damping);
 
   void pause(bool paused);
   bool paused() const;

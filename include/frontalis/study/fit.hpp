@@ -1,6 +1,7 @@
 #pragma once
 
 #include "frontalis/solver/solver.hpp"
+#include "frontalis/study/plot.hpp"
 #include "frontalis/study/table.hpp"
 
 #include <array>
@@ -118,9 +119,10 @@ struct RetargetResult
   struct Row
   {
     std::string landmark;
-    double motion = 0;   ///< largest displacement in the track [m]
-    double mean = 0;     ///< root mean square of the error [m]
-    double largest = 0;  ///< largest error [m]
+    double motion = 0;           ///< largest displacement in the track [m]
+    double mean = 0;             ///< root mean square of the error [m]
+    double largest = 0;          ///< largest error [m]
+    std::vector<double> errors;  ///< at each time [m]
   };
   std::vector<Row> rows;  ///< errors of the best simulation, per landmark of the track
 };
@@ -133,6 +135,8 @@ RetargetResult retarget(const std::shared_ptr<const Model>& model, const Landmar
                         const FitRequest& request, const FitSettings& settings);
 
 Table retarget_table(const RetargetResult& result);
+/// The errors of all landmarks over time.
+Plot retarget_plot(const RetargetResult& result);
 /// Converts to a table (CSV) for `frontalis run --activations`.
 std::string activations_of(const RetargetResult& result);
 

@@ -91,7 +91,7 @@ FacePanel::FacePanel(QWidget* parent)
 
   auto* const colours = new QHBoxLayout;
   colours->addWidget(new QLabel("Colour"));
-  colour_->addItems({ "skin", "displacement", "field" });
+  colour_->addItems({ "skin", "displacement", "activation", "strain", "stress", "lines" });
   colours->addWidget(colour_);
   colours->addStretch();
   colours->addWidget(locked_);
@@ -146,12 +146,8 @@ FacePanel::FacePanel(QWidget* parent)
                                       { message_, "message" } })
     widget->setObjectName(name);
 
-  connect(face_, &QLineEdit::editingFinished, this,
-          [this]
-          {
-            connect_to_face();
-            Q_EMIT configChanged();
-          });
+  connect(face_, &QLineEdit::editingFinished, this, &FacePanel::connect_to_face);
+  connect(face_, &QLineEdit::editingFinished, this, &FacePanel::configChanged);
   connect(locked_, &QCheckBox::toggled, this, [this] { Q_EMIT configChanged(); });
   connect(pause_, &QPushButton::clicked, this,
           [this]
@@ -161,8 +157,7 @@ FacePanel::FacePanel(QWidget* parent)
             call("pause", request);
           });
   connect(reset, &QPushButton::clicked, this, [this] { call("reset", std_srvs::Trigger()); });
-  connect(colour_, qOverload<int>(&QComboBox::activated), this,
-          [this] { set_parameter("skin_colour", colour_->currentText().toStdString()); });
+  connect(colour_, &QComboBox::textActivated, this, &FacePanel::set_colour);
   auto* const timer = new QTimer(this);
   connect(timer, &QTimer::timeout, this, [this] { poll(); });
   timer->start(200);
@@ -360,12 +355,17 @@ void FacePanel::express(const std::string& name)
   expression_.publish(message);
 }
 
-void FacePanel::set_parameter(const std::string& name, const std::string& value)
+void FacePanel::set_colour(const QString& colour)
 {
+  const std::string name = colour.toStdString();
+  const bool is_field = name == "strain" || name == "stress" || name == "lines";
   dynamic_reconfigure::Reconfigure request;
-  auto& entry = request.request.config.strs.emplace_back();
-  entry.name = name;
-  entry.value = value;
+  auto& parameters = request.request.config.strs;
+  parameters.resize(is_field ? 2 : 1);
+  parameters.back().name = "skin_field";
+  parameters.back().value = name;
+  parameters.front().name = "skin_colour";
+  parameters.front().value = is_field ? "field" : name;
   call("set_parameters", request);
 }
 

@@ -57,7 +57,7 @@ private:
   template <typename Service>
   void call(const char* service, const Service& request,
             std::function<void(const typename Service::Response&)> use = {});
-  void set_parameter(const std::string& name, const std::string& value);
+  void set_colour(const QString& colour);  ///< one of the entries of colour_
 
   QLineEdit* face_;
   QCheckBox* locked_;

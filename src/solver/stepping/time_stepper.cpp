@@ -2,6 +2,7 @@
 
 #include "solver/contact/past_rim.hpp"
 
+#include "frontalis/solver/damping.hpp"
 #include "frontalis/solver/rigid_motion.hpp"
 #include "solver/stepping/dynamic_relaxation.hpp"
 #include "solver/stepping/highest_frequency_search.hpp"
@@ -56,9 +57,10 @@ TimeStepper::TimeStepper(std::shared_ptr<const Model> model, const SolverSetting
       discretisation_(*model_),
       effects_(*model_),
       controller_(discretisation_.frequency_squared_max, model_->time_step_share, settings.time_step),
-      motion_(at_rest())
+      motion_(at_rest()),
+      damping_(model_->damping)
 {
-  conditions_.damping = model_->damping;
+  conditions_.damping = damping_;
   renew_conditions();
   backend_ = make_backend({ *model_, discretisation_, conditions_, settings });
   traits_ = backend_->traits();
@@ -237,7 +239,7 @@ Equilibrium TimeStepper::settle(const Controls& target, double tolerance, double
     explicit Settling(TimeStepper& s) : stepper(s) { stepper.settling_ = true; }
     ~Settling()
     {
-      stepper.conditions_.damping = stepper.model_->damping;
+      stepper.conditions_.damping = stepper.damping_;
       stepper.settling_ = false;
       stepper.open_ledger();
     }
@@ -264,6 +266,15 @@ Equilibrium TimeStepper::settle(const Controls& target, double tolerance, double
   }
   return relaxation.result();
 }
+
+void TimeStepper::set_damping(double damping)
+{
+  if (!(damping >= 0) || !std::isfinite(damping))
+    throw Error(fmt::format("damping {:g} 1/s: allowed are finite numbers from 0", damping));
+  conditions_.damping = damping_ = damping;
+}
+
+void set_damping(Solver& solver, double damping) { dynamic_cast<TimeStepper&>(solver).set_damping(damping); }
 
 void TimeStepper::switch_effect(Effect effect, bool on)
 {

@@ -30,6 +30,7 @@ public:
   std::string pack() override;
   void unpack(const std::string& bytes) override;
   int steps_per_check() const override { return traits_.steps_per_check; }
+  void set_damping(double damping);  ///< frontalis/solver/damping.hpp
   void slow_down(double share) override { controller_.slow_down(share); }
   double time() const override { return motion_.time; }
   double time_step() const override { return controller_.safe_step(); }
@@ -93,6 +94,7 @@ private:
   std::unique_ptr<SkinValues> skin_values_;     // made on the first request
   Motion motion_;
   Profile profile_;
+  double damping_;         // outside of settle() [1/s]
   bool settling_ = false;  // viscous stresses are fully relaxed, and no ledger is kept
 };
 

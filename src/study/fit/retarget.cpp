@@ -53,6 +53,7 @@ std::vector<RetargetResult::Row> rows_of(const LandmarkTrack& track, const std::
   {
     RetargetResult::Row& row = rows.emplace_back();
     row.landmark = track.landmarks[l];
+    row.errors.reserve(reached.size());
     double sum = 0;
     for (std::size_t t = 0; t < reached.size(); ++t)
     {
@@ -61,6 +62,7 @@ std::vector<RetargetResult::Row> rows_of(const LandmarkTrack& track, const std::
       const double error = (wanted - reached[t].segment<3>(static_cast<Index>(3 * landmarks[l]))).norm();
       row.motion = std::max(row.motion, wanted.norm());
       row.largest = std::max(row.largest, error);
+      row.errors.push_back(error);
       sum += error * error;
     }
     row.mean = std::sqrt(sum / static_cast<double>(reached.size()));
@@ -208,6 +210,31 @@ Table retarget_table(const RetargetResult& result)
   for (const auto& row : result.rows)
     table.add({ row.landmark, mm(row.motion), mm(row.mean), mm(row.largest) });
   return table;
+}
+
+Plot retarget_plot(const RetargetResult& result)
+{
+  Plot plot{ "Distance of the landmarks from their track", "time [s]", "error [mm]" };
+  const bool named = result.rows.size() <= 8;  // a longer legend would cover the curves
+  for (const auto& row : result.rows)
+  {
+    Plot::Curve& curve = plot.curves.emplace_back();
+    curve.name = named ? row.landmark : "";
+    curve.style = Plot::Style::line;
+    for (std::size_t t = 0; t < row.errors.size(); ++t)
+      curve.add(result.time[t], 1e3 * row.errors[t]);
+  }
+  Plot::Curve& mean = plot.curves.emplace_back();
+  mean.name = "root mean square";
+  mean.style = Plot::Style::strong;
+  for (std::size_t t = 0; t < result.time.size(); ++t)
+  {
+    double sum = 0;
+    for (const auto& row : result.rows)
+      sum += row.errors[t] * row.errors[t] / static_cast<double>(result.rows.size());
+    mean.add(result.time[t], 1e3 * std::sqrt(sum));
+  }
+  return plot;
 }
 
 std::string activations_of(const RetargetResult& result)

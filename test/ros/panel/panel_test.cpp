@@ -11,6 +11,7 @@
 #include <QAbstractButton>
 #include <QApplication>
 #include <QCheckBox>
+#include <QComboBox>
 #include <QDoubleSpinBox>
 #include <QProgressBar>
 #include <QSlider>
@@ -103,6 +104,15 @@ TEST_F(Panel, MovesTheFaceAndShowsIt)
 
   find<QSlider>("AU1")->setValue(800);
   EXPECT_TRUE(reaches(0.4, 0.4));
+
+  auto* const colour = find<QComboBox>("colour");
+  for (const auto& [item, parameter] : { std::pair{ "stress", "skin_field" }, { "activation", "skin_colour" } })
+  {
+    Q_EMIT colour->textActivated(item);
+    std::string value;
+    EXPECT_TRUE(run_until([&] { return ros::param::get(std::string("/face/") + parameter, value) && value == item; }))
+        << item;
+  }
 
   auto* const pause = find<QAbstractButton>("pause");
   pause->click();
