@@ -54,14 +54,14 @@ void expect_room(const Model& model, const VoxelCut& cut)
 
 }  // namespace
 
-Effects effects_of(const Model& model, const Discretisation& discretisation)
+Effects effects_of(const Model& model, const Discretisation& discretisation, bool in_strips)
 {
   Effects effects = Effects::none;
-  if (discretisation.assumed_strain || discretisation.selective_reduced || discretisation.laws)
+  if (discretisation.assumed_strain || discretisation.selective_reduced || (discretisation.laws && !in_strips))
     effects = effects | Effects::general_element;
   if (discretisation.viscous_terms > 0)
     effects = effects | Effects::viscosity;
-  if (!model.fibre_muscle.empty())
+  if (!model.fibre_muscle.empty() || (discretisation.laws && in_strips))
     effects = effects | Effects::fibres;
   for (const SlidingNode& node : model.sliding)
     if (model.constraint_surfaces[node.surface].friction > 0)
@@ -75,7 +75,7 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
 }
 
 DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisation, VoxelCut&& cut)
-    : most_effects_(effects_of(model, discretisation)),
+    : most_effects_(effects_of(model, discretisation, cut.strips != nullptr)),
       device_node_((expect_room(model, cut), std::move(cut.device_node()))),
       loads_(model, discretisation, device_node_),
       viscosity_(model, discretisation, device_node_,
@@ -99,7 +99,7 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
   if (cut.patches)
     add_patches(model, *cut.patches, cut.part_room, tasks, palette_of_voxel_);
   else
-    add_strips(*cut.strips, tasks, palette_of_voxel_);
+    add_strips(model, discretisation, *cut.strips);
   most_effects_ = most_effects_ | node_part(tasks);
   effects_ = most_effects_;
   choose_kernel();
@@ -122,11 +122,15 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
   g.stabilisation = stabilisation_.data();
   g.law_begin = law_begin_.data();
   g.laws = laws_.data();
+  g.law_voxels = law_voxels_.data();
+  g.law_stress = law_stress_.data();
+  g.law_count = static_cast<std::uint32_t>(law_voxels_.size());
   g.muscles = static_cast<std::int32_t>(model.muscles.size());
   g.fibre_words = fibre_words_.data();
   g.fibres = fibres_.data();
   g.fibre_muscle = fibre_muscle_.data();
   g.tasks = tasks_.data();
+  g.task_count = static_cast<std::uint32_t>(tasks_.size());
   g.load_parts = loads_.parts();
   g.load_begin = loads_.begin();
   g.vertex_force = loads_.vertex_force();
@@ -242,7 +246,8 @@ void DeviceModel::add_fibres(const Model& model, const Discretisation& discretis
   fibre_muscle_ = DeviceArray<std::uint32_t>(muscle_words(model, EffectSet::all()));
 }
 
-// Lists the loads and restrictions of nodes, sorted by device node. Nodes that never move have no tasks.
+// Lists the loads and restrictions of nodes. Nodes that never move have no tasks. Tasks are sorted by the kinds of
+// their effects, so that the threads of a warp do the same, and then by device node.
 std::vector<NodeTask> DeviceModel::add_tasks(const Model& model)
 {
   std::vector<NodeTask> task_of(model.nodes.size(), NodeTask{ 0, { -1, -1, -1, -1, -1 } });
@@ -292,7 +297,14 @@ std::vector<NodeTask> DeviceModel::add_tasks(const Model& model)
     else if (std::any_of(std::begin(t.of), std::end(t.of), [](std::int32_t index) { return index >= 0; }))
       tasks.push_back(t);
   }
-  std::sort(tasks.begin(), tasks.end(), [](const NodeTask& a, const NodeTask& b) { return a.node < b.node; });
+  const auto key = [](const NodeTask& task)
+  {
+    std::uint32_t kinds = 0;
+    for (int effect = 0; effect < node_effects; ++effect)
+      kinds |= task.of[effect] < 0 ? 0 : 1u << effect;
+    return std::make_pair(kinds, task.node);
+  };
+  std::sort(tasks.begin(), tasks.end(), [&](const NodeTask& a, const NodeTask& b) { return key(a) < key(b); });
   prescribed_ = DeviceArray<PrescribedMotion>(prescribed);
   rigid_ = DeviceArray<RigidMotion>(rigid);
   return tasks;

@@ -19,8 +19,8 @@ namespace cuda
 /// Returns StepArguments::fibre_muscle: one word per fibre.
 std::vector<std::uint32_t> muscle_words(const Model& model, EffectSet running);
 
-/// The effects that a model's kernels must compute because of its voxels and of friction.
-Effects effects_of(const Model& model, const Discretisation& discretisation);
+/// The effects that a model's kernels must compute because of its voxels and of friction, in strips or in patches.
+Effects effects_of(const Model& model, const Discretisation& discretisation, bool in_strips);
 
 /// Choice between patches, if they fit into shared memory, and strips.
 struct CutChoice
@@ -85,7 +85,8 @@ private:
   std::vector<std::uint32_t> add_palette(const Model& model, const Discretisation& discretisation);
   void add_fibres(const Model& model, const Discretisation& discretisation);
   std::vector<NodeTask> add_tasks(const Model& model);
-  void add_strips(VoxelStrips& strips, std::vector<NodeTask>& tasks, const std::vector<std::uint32_t>& palette_entry);
+  void add_strips(const Model& model, const Discretisation& discretisation, VoxelStrips& strips);
+  std::vector<std::uint32_t> add_law_voxels(const Model& model);
   void add_patches(const Model& model, const VoxelPatches& patches, const PartRoom& for_parts,
                    const std::vector<NodeTask>& tasks, const std::vector<std::uint32_t>& palette_entry);
   void run_fibres(const Model& model, const Discretisation& discretisation, EffectSet running);
@@ -125,6 +126,8 @@ private:
   DeviceArray<float4> palette_, stabilisation_;
   DeviceArray<std::uint32_t> law_begin_;
   DeviceArray<LawEntry> laws_;
+  DeviceArray<LawVoxel> law_voxels_;
+  DeviceArray<float> law_stress_;
   DeviceArray<std::uint32_t> fibre_words_, fibre_muscle_;
   DeviceArray<float4> fibres_;
   DeviceArray<NodeTask> tasks_;

@@ -51,28 +51,38 @@ std::vector<std::uint32_t> VoxelCut::voxel_at() const
   return at;
 }
 
-// Device nodes are numbered strip by strip, so that the tasks of a strip are contiguous.
-void DeviceModel::add_strips(VoxelStrips& strips, std::vector<NodeTask>& tasks,
-                             const std::vector<std::uint32_t>& palette_entry)
+// Makes the list of voxels with laws other than neo-Hookean. Returns the second word of the slots of each voxel.
+std::vector<std::uint32_t> DeviceModel::add_law_voxels(const Model& model)
+{
+  std::vector<std::uint32_t> words = palette_of_voxel_, law_begin;
+  law_begin_.download(law_begin);
+  std::vector<LawVoxel> law_voxels;
+  for (std::size_t e = 0; e < words.size() && !law_begin.empty(); ++e)
+  {
+    const std::uint32_t palette = words[e];
+    if (law_begin[palette] == law_begin[palette + 1])
+      continue;
+    words[e] = has_law_voxel | static_cast<std::uint32_t>(law_voxels.size());
+    LawVoxel voxel{ {}, palette };
+    for (int b = 0; b < 8; ++b)
+      voxel.node[b] = device_node_[model.voxel_nodes[e][b]];
+    law_voxels.push_back(voxel);
+  }
+  law_voxels_ = DeviceArray<LawVoxel>(law_voxels);
+  law_stress_ = DeviceArray<float>(10 * law_voxels.size());
+  return words;
+}
+
+void DeviceModel::add_strips(const Model& model, const Discretisation& discretisation, VoxelStrips& strips)
 {
   filled_ = strips.filled();
-  std::vector<std::uint32_t> strip_of_device(device_node_.size() + 1, 0);
   std::vector<char> still(device_node_.size() + 1, 0);
-  for (std::size_t n = 0; n < device_node_.size(); ++n)
-    strip_of_device[device_node_[n]] = strips.strip_of_node[n];
   for (const auto n : still_nodes_)
     still[device_node_[n]] = 1;
-  std::uint32_t task = 0;
-  for (std::size_t s = 0; s < strips.strips.size(); ++s)
-  {
-    strips.strips[s].task_begin = task;
-    while (task < tasks.size() && strip_of_device[tasks[task].node] == s)
-      ++task;
-    strips.strips[s].task_end = task;
-  }
+  const auto words = discretisation.selective_reduced ? palette_of_voxel_ : add_law_voxels(model);
   for (auto& slot : strips.slots)
   {
-    slot.voxel = slot.voxel > 0 ? palette_entry[slot.voxel - 1] : 0;
+    slot.voxel = slot.voxel > 0 ? words[slot.voxel - 1] : 0;
     if (still[slot.node & StripSlot::node_mask] != 0)
       slot.node &= ~StripSlot::updated;
   }

@@ -99,6 +99,17 @@ struct LawEntry
   float parameters[physics::parameter_slots];  ///< ordered as in physics/materials/description.hpp
 };
 
+/// A voxel with laws whose stress strips read from StepArguments::law_stress.
+struct LawVoxel
+{
+  std::uint32_t node[8];  ///< device nodes
+  std::uint32_t palette;
+};
+
+/// Flag of the second word of a slot: the other bits are an index into StepArguments::law_voxels, which has the palette
+/// entry.
+constexpr std::uint32_t has_law_voxel = 0x80000000u;
+
 /// Arguments of a launch that makes steps of equal length or computes internal forces. Pointers are to device memory.
 struct StepArguments : physics::Kick<float>
 {
@@ -111,7 +122,7 @@ struct StepArguments : physics::Kick<float>
   const uint4* node_voxels;         ///< VoxelPatches::node_voxel
   const std::int32_t* patch_tasks;  ///< per device node: see patch_task
   const Strip* strips;
-  const uint2* slots;  ///< per StripSlot: node and palette entry
+  const uint2* slots;  ///< per StripSlot: node, and palette entry or law voxel (has_law_voxel)
   std::uint32_t strip_count;
   /// displacement [m] and inverse mass [1/kg], 0 for nodes that never move; u[first] is the present one
   float4* u[2];
@@ -126,7 +137,14 @@ struct StepArguments : physics::Kick<float>
   const float4* stabilisation;     ///< bending, coupling, torsion, warping [N m]; null: scalar hourglass control
   const std::uint32_t* law_begin;  ///< first law other than neo-Hookean of each palette entry; null if there are none
   const LawEntry* laws;
-  bool selective_reduced;  ///< whether the isochoric stress is taken at eight Gauss points
+  // In strips, a kernel before each step computes the laws other than neo-Hookean, because few voxels have them and
+  // every warp of the step kernel would need registers for them. With selective reduced integration the step kernel
+  // computes them, at the Gauss points.
+  const LawVoxel* law_voxels;
+  /// [component][law voxel]: nine of the laws' stress times tissue volume [N m], then law_stiffening() [N/m]
+  float* law_stress;
+  std::uint32_t law_count;  ///< number of law voxels
+  bool selective_reduced;   ///< whether the isochoric stress is taken at eight Gauss points
   /// 1 + index of the viscous voxel, or 0; in the order of slots or patch_properties; null: none
   const std::uint32_t* viscous_words;
   /// relaxed stress times tissue volume [N m] as [term][component][viscous voxel]; two terms are followed by their sum
@@ -146,6 +164,7 @@ struct StepArguments : physics::Kick<float>
 
   // Restricted and loaded nodes:
   const NodeTask* tasks;
+  std::uint32_t task_count;
   const LoadPart* load_parts;
   const std::int32_t* load_begin;
   const double* vertex_force;  ///< three per vertex, at the end of the ramp [N]
@@ -219,12 +238,12 @@ constexpr std::int32_t still = -0x7fffffff;
 /// neither registers nor instructions. Effects of few nodes are called through a table (node_tasks.cuh).
 enum class Effects : std::uint8_t
 {
-  none = 0,  ///< neo-Hookean with scalar hourglass control
-  fibres = 1,
+  none = 0,    ///< neo-Hookean with scalar hourglass control
+  fibres = 1,  ///< in strips also laws other than neo-Hookean, whose stress is read (StepArguments::law_stress)
   viscosity = 2,
   general_element = 4,  ///< laws, hourglass controls and integrations other than those of `none`
   sliding = 8,          ///< nodes that slide on surfaces
-  tasks = 16,           ///< effects in node_tasks.cuh; always set together with sliding
+  tasks = 16,           ///< effects in node_tasks.cuh; in kernels of patches always set together with sliding
   friction = 32,        ///< friction of sliding nodes
   contact = 64,         ///< contact with bodies, in patches; always set together with all effects of nodes
   shell = 128           ///< layers that are shells, in patches; always set together with contact
@@ -294,5 +313,9 @@ int resident_blocks(const StepLaunch& launch);
 /// Launches steps [step_begin, step_end) of the plan. Only patches can run several steps per launch.
 cudaError_t launch_steps(const StepArguments& arguments, const StepLaunch& launch, cudaStream_t stream);
 cudaError_t launch_patches(const StepArguments& arguments, const StepLaunch& launch, cudaStream_t stream);
+/// In strips: finds the stress of all law voxels before the step.
+cudaError_t launch_law_stress(const StepArguments& arguments, bool with_bound, cudaStream_t stream);
+/// In strips: applies the tasks of all nodes after their update. `effects`: those of nodes.
+cudaError_t launch_tasks(const StepArguments& arguments, Effects effects, cudaStream_t stream);
 
 }  // namespace frontalis

@@ -61,10 +61,35 @@ __device__ __forceinline__ void add(RowForces& to, const RowForces& from)
   }
 }
 
+/// A voxel of a strip. The stress of its laws other than neo-Hookean was computed before the step.
+template <Effects With>
+struct StripVoxel : ElementVoxel<With>
+{
+  using Kinematics = physics::Kinematics<float>;
+  std::uint32_t law_word;  ///< second word of its slot
+
+  __device__ __forceinline__ bool has_laws() const
+  {
+    return has<With, Effects::fibres> && (law_word & has_law_voxel) != 0;
+  }
+  __device__ __forceinline__ float law_number(int n) const
+  {
+    return this->g.law_stress[n * this->g.law_count + (law_word & ~has_law_voxel)];
+  }
+  __device__ __forceinline__ void add_laws(const Kinematics&, physics::Matrix3<float>& P) const
+  {
+#pragma unroll
+    for (int n = 0; n < 9; ++n)
+      P.a[n / 3][n % 3] += law_number(n);
+  }
+  __device__ __forceinline__ float law_stiffening(const Kinematics&) const { return law_number(9); }
+  __device__ __forceinline__ float stiffness_now(const Kinematics& k) const { return physics::stiffness_now(*this, k); }
+};
+
 /// Forces of the voxel between rows a and b of the lower and upper planes of nodes: the y and z steps of the transform,
 /// the forces on the modes, and the transposed z and y steps.
 template <Effects With>
-__device__ __forceinline__ void voxel_forces(const StepArguments& g, const ElementPlace& place,
+__device__ __forceinline__ void voxel_forces(const StepArguments& g, const ElementPlace& place, std::uint32_t law_word,
                                              const Activations& activation, const RowValues& below_a,
                                              const RowValues& below_b, const RowValues& above_a,
                                              const RowValues& above_b, bool with_bound, float& stiffness,
@@ -85,7 +110,8 @@ __device__ __forceinline__ void voxel_forces(const StepArguments& g, const Eleme
       mode[c][q + 4] = high[q] - low[q];
     }
   }
-  element_forces<With>(g, place, activation, 0, mode, with_bound, stiffness);
+  const StripVoxel<With> voxel{ element_voxel<With>(g, place, activation, 0), law_word };
+  element_forces(voxel, mode, with_bound, stiffness);
 #pragma unroll
   for (int c = 0; c < 3; ++c)
 #pragma unroll
@@ -212,8 +238,10 @@ __device__ __forceinline__ void sweep_strip(const StepArguments& g, const Strip&
       if (__any_sync(whole_warp, here[r].y != 0))
       {
         place.palette = here[r].y;
-        voxel_forces<With>(g, place, activation, below[r], below[r + 1], above_a, above_b, with_bound, stiffness,
-                           force);
+        if (has<With, Effects::fibres> && (here[r].y & has_law_voxel) != 0)
+          place.palette = __ldg(&g.law_voxels[here[r].y & ~has_law_voxel].palette);
+        voxel_forces<With>(g, place, here[r].y, activation, below[r], below[r + 1], above_a, above_b, with_bound,
+                           stiffness, force);
       }
       // A voxel adds the same stiffness to each of its nodes.
       if (with_bound && r > 0)

@@ -25,6 +25,28 @@ __device__ __forceinline__ physics::Kinematics<float> kinematics_of(const StepAr
   return physics::kinematics(mode[0], mode[1], mode[2], g.scale);
 }
 
+template <bool WithBound>
+__global__ void __launch_bounds__(block) find_law_stress(const __grid_constant__ StepArguments g)
+{
+  const std::uint32_t v = blockIdx.x * block + threadIdx.x;
+  if (v >= g.law_count)
+    return;
+  const LawVoxel at = g.law_voxels[v];
+  const auto k = kinematics_of(g, g.u[g.first], at.node);
+  const auto voxel = palette_voxel<float>(g, at.palette);
+  physics::Matrix3<float> P{};
+  physics::add_laws(voxel, k, P);
+  float* to = g.law_stress + v;
+  for (const auto& row : P.a)
+    for (const float stress : row)
+    {
+      *to = stress;
+      to += g.law_count;
+    }
+  if (WithBound)
+    *to = physics::law_stiffening(voxel, k);
+}
+
 __global__ void __launch_bounds__(block) relax(const __grid_constant__ StepArguments g, const ViscousVoxels viscous,
                                                const float4* u, const float4* u_before, float elapsed)
 {
@@ -158,6 +180,13 @@ int blocks(std::uint32_t count) { return static_cast<int>((count + block - 1) / 
 
 }  // namespace
 }  // namespace cuda
+
+cudaError_t launch_law_stress(const StepArguments& arguments, bool with_bound, cudaStream_t stream)
+{
+  const auto kernel = with_bound ? cuda::find_law_stress<true> : cuda::find_law_stress<false>;
+  kernel<<<cuda::blocks(arguments.law_count), cuda::block, 0, stream>>>(arguments);
+  return cudaGetLastError();
+}
 
 cudaError_t launch_relaxation(const StepArguments& arguments, const ViscousVoxels& viscous, const float4* u,
                               const float4* u_before, float elapsed, cudaStream_t stream)

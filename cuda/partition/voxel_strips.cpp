@@ -213,7 +213,6 @@ VoxelStrips::VoxelStrips(const Model& model, const StripSettings& settings) : ro
 
   // Own nodes are numbered in the order in which a warp processes them.
   device_node.assign(model.nodes.size(), 0);
-  strip_of_node.assign(model.nodes.size(), 0);
   std::uint32_t next = 1;
   std::size_t slot_count = 0;
   for (std::size_t w = 0; w < warps.size(); ++w)
@@ -224,11 +223,7 @@ VoxelStrips::VoxelStrips(const Model& model, const StripSettings& settings) : ro
         for (const Piece& p : warps[w])
           if (p.k + plane >= p.own_k && p.k + plane < p.own_k + p.own_planes)
             builder.nodes.each(p.j + r, p.k + plane, p.i + p.own_first, p.own_count,
-                               [&](std::int32_t, std::uint32_t n)
-                               {
-                                 device_node[n] = next++;
-                                 strip_of_node[n] = static_cast<std::uint32_t>(w);
-                               });
+                               [&](std::int32_t, std::uint32_t n) { device_node[n] = next++; });
   }
   if (next != model.nodes.size() + 1 || slot_count >= 0xffffffffu)
     throw BackendUnavailable(fmt::format("backend cuda: the strips hold {} of {} nodes", next - 1, model.nodes.size()));
@@ -238,7 +233,7 @@ VoxelStrips::VoxelStrips(const Model& model, const StripSettings& settings) : ro
   for (const auto& warp : warps)
   {
     const std::int32_t planes = warp[0].planes;
-    strips.push_back({ static_cast<std::uint32_t>(slot), static_cast<std::uint32_t>(planes), Strip::none, 0, 0 });
+    strips.push_back({ static_cast<std::uint32_t>(slot), static_cast<std::uint32_t>(planes), Strip::none });
     bool fibres = false;
     for (std::int32_t plane = 0; plane < planes; ++plane)
       for (int r = -1; r <= rows; ++r, slot += lanes)

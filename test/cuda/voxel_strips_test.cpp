@@ -60,7 +60,6 @@ void check_strips(const Model& model, const StripSettings& settings)
           {
             ASSERT_TRUE(row >= 1 && row <= rows);
             const auto n = node_of.at(here.node & StripSlot::node_mask);
-            EXPECT_EQ(strips.strip_of_node[n], s);
             ++owners[n];
           }
           if (here.voxel == 0)
