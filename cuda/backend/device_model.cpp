@@ -52,6 +52,22 @@ void expect_room(const Model& model, const VoxelCut& cut)
         fmt::format("backend cuda: the model needs {} bytes of device memory, {} of {} are free", wanted, free, total));
 }
 
+// The voxels with fibres or with laws other than neo-Hookean, unless these are computed at Gauss points.
+std::vector<std::uint32_t> voxels_with_added_stress(const Model& model, const Discretisation& discretisation)
+{
+  std::vector<std::uint32_t> voxels;
+  for (std::uint32_t e = 0; e < model.voxels.size(); ++e)
+  {
+    bool any = !model.fibre_muscle.empty() && model.fibre_begin[e] < model.fibre_begin[e + std::size_t{ 1 }];
+    for (auto m = model.mixture_begin[e]; m < model.mixture_begin[e + std::size_t{ 1 }]; ++m)
+      any = any || (!discretisation.selective_reduced && model.mixture_proportion[m] > 0 &&
+                    model.materials[model.mixture_material[m]].law != Law::neo_hookean);
+    if (any)
+      voxels.push_back(e);
+  }
+  return voxels;
+}
+
 }  // namespace
 
 Effects effects_of(const Model& model, const Discretisation& discretisation, bool in_strips)
@@ -83,7 +99,12 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
                  cut.patches != nullptr),
       contacts_(model, device_node_)
 {
-  palette_of_voxel_ = add_palette(model, discretisation);
+  const auto added = cut.stress_apart ? voxels_with_added_stress(model, discretisation) : std::vector<std::uint32_t>();
+  if (!added.empty())
+    most_effects_ =
+        (most_effects_ & (Effects::viscosity | Effects::general_element | Effects::friction)) | Effects::added;
+  palette_of_voxel_ = add_palette(model, discretisation, added);
+  add_added_voxels(model, added);
   add_fibres(model, discretisation);
   std::vector<NodeTask> tasks = add_tasks(model);
   // Nodes that never move have no inverse mass.
@@ -99,7 +120,7 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
   if (cut.patches)
     add_patches(model, *cut.patches, cut.part_room, tasks, palette_of_voxel_);
   else
-    add_strips(model, discretisation, *cut.strips);
+    add_strips(*cut.strips);
   most_effects_ = most_effects_ | node_part(tasks);
   effects_ = most_effects_;
   choose_kernel();
@@ -122,9 +143,9 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
   g.stabilisation = stabilisation_.data();
   g.law_begin = law_begin_.data();
   g.laws = laws_.data();
-  g.law_voxels = law_voxels_.data();
-  g.law_stress = law_stress_.data();
-  g.law_count = static_cast<std::uint32_t>(law_voxels_.size());
+  g.added_voxels = added_voxels_.data();
+  g.added_stress = added_stress_.data();
+  g.added_count = static_cast<std::uint32_t>(added_voxels_.size());
   g.muscles = static_cast<std::int32_t>(model.muscles.size());
   g.fibre_words = fibre_words_.data();
   g.fibres = fibres_.data();
@@ -161,8 +182,10 @@ StepArguments DeviceModel::arguments(bool idle_parts) const
   return g;
 }
 
-// Voxels with equal properties share a palette entry; entry 0 has no stiffness. Returns the entry of each voxel.
-std::vector<std::uint32_t> DeviceModel::add_palette(const Model& model, const Discretisation& d)
+// Voxels with equal properties share a palette entry; entry 0 has no stiffness. The first voxels, `added`, have entries
+// of their own, so that the entry is also the place of their added stress. Returns the entry of each voxel.
+std::vector<std::uint32_t> DeviceModel::add_palette(const Model& model, const Discretisation& d,
+                                                    const std::vector<std::uint32_t>& added)
 {
   const bool stabilised = d.assumed_strain;
   std::vector<float4> entries(1, float4{ 0, 0, 0, 0 });
@@ -174,7 +197,14 @@ std::vector<std::uint32_t> DeviceModel::add_palette(const Model& model, const Di
   Entry latest, entry;
   std::uint32_t index = 0;
   VoxelProperties voxel;
-  for (std::size_t e = 0; e < model.voxels.size(); ++e)
+  std::vector<std::uint32_t> order = added;
+  std::vector<char> is_added(model.voxels.size(), 0);
+  for (const std::uint32_t e : added)
+    is_added[e] = 1;
+  for (std::uint32_t e = 0; e < model.voxels.size(); ++e)
+    if (is_added[e] == 0)
+      order.push_back(e);
+  for (const std::uint32_t e : order)
   {
     d.voxel(e, voxel);
     entry.clear();
@@ -193,10 +223,13 @@ std::vector<std::uint32_t> DeviceModel::add_palette(const Model& model, const Di
       for (const double x : part.parameters)
         entry.push_back(static_cast<float>(x));
     }
-    if (index == 0 || entry != latest)
+    if (is_added[e] != 0 || index == 0 || entry != latest)
     {
-      const auto found = known.emplace(entry, static_cast<std::uint32_t>(entries.size()));
-      if (found.second)
+      index = static_cast<std::uint32_t>(entries.size());
+      const auto found = is_added[e] != 0 ? known.end() : known.emplace(entry, index).first;
+      if (found != known.end())
+        index = found->second;
+      if (index == entries.size())
       {
         entries.push_back(float4{ entry[0], entry[1], entry[2], entry[3] });
         std::size_t at = 4;
@@ -214,10 +247,11 @@ std::vector<std::uint32_t> DeviceModel::add_palette(const Model& model, const Di
         }
         law_begin.push_back(static_cast<std::uint32_t>(laws.size()));
       }
-      index = found.first->second;
       latest = entry;
     }
     entry_of[e] = index;
+    // The next voxel with an entry that may be shared must not take this one.
+    index = is_added[e] != 0 ? 0 : index;
   }
   viscosity_.set_palette(entry_of);
   palette_ = DeviceArray<float4>(entries);
@@ -228,6 +262,20 @@ std::vector<std::uint32_t> DeviceModel::add_palette(const Model& model, const Di
     laws_ = DeviceArray<LawEntry>(laws);
   }
   return entry_of;
+}
+
+void DeviceModel::add_added_voxels(const Model& model, const std::vector<std::uint32_t>& added)
+{
+  std::vector<AddedVoxel> voxels;
+  for (const std::uint32_t e : added)
+  {
+    AddedVoxel voxel{ {}, fibre_word(model, e) };
+    for (int b = 0; b < 8; ++b)
+      voxel.node[b] = device_node_[model.voxel_nodes[e][b]];
+    voxels.push_back(voxel);
+  }
+  added_voxels_ = DeviceArray<AddedVoxel>(voxels);
+  added_stress_ = DeviceArray<AddedStress>(voxels.size());
 }
 
 void DeviceModel::add_fibres(const Model& model, const Discretisation& discretisation)

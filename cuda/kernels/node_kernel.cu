@@ -11,7 +11,7 @@ constexpr int block = 128;
 // many such nodes would take several times as long as the others, and all of them would wait for it. With: effects of
 // nodes. It is an int, because nvcc cannot name a combination of enumerators.
 template <int With>
-__global__ void __launch_bounds__(block) run_tasks(const __grid_constant__ StepArguments g)
+__global__ void __launch_bounds__(block, 4) run_tasks(const __grid_constant__ StepArguments g)
 {
   constexpr Effects effects = static_cast<Effects>(With);
   const std::uint32_t t = blockIdx.x * block + threadIdx.x;
@@ -32,6 +32,8 @@ __global__ void __launch_bounds__(block) run_tasks(const __grid_constant__ StepA
   const float4 old = make_float4(before.x, before.y, before.z, now.w);
   if (slides)
     slide<effects>(g, sliding, { old, task.node, g.step_begin }, fetch, n);
+  else if (has<effects, Effects::sliding> && glides_only(task))
+    glide_here<effects>(g, task.of[node_gliding], { old, task.node, g.step_begin }, n);
   else
     apply_task<effects>(g, task, old, g.step_begin, n);
   next[task.node] = make_float4(n.u[0], n.u[1], n.u[2], now.w);

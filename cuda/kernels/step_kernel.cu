@@ -47,12 +47,26 @@ __global__ void __launch_bounds__(step_block, strip_blocks(static_cast<Effects>(
 namespace
 {
 
-template <bool WithBound, int... Voxels>
-auto step_kernel_of(Effects effects, std::integer_sequence<int, Voxels...>)
+// Strips have kernels for all sets of viscosity and general elements, each without fibres, with fibres, and with added
+// stress.
+constexpr int strip_sets = 12;
+constexpr int index_of(Effects effects)
+{
+  const bool fibres = (effects & Effects::fibres) != Effects::none, added = (effects & Effects::added) != Effects::none;
+  return int(effects & (Effects::viscosity | Effects::general_element)) / 2 * 3 + (added ? 2 : fibres ? 1 : 0);
+}
+constexpr Effects set_of(int index)
+{
+  const Effects part[] = { Effects::none, Effects::fibres, Effects::added };
+  return static_cast<Effects>(index / 3 * 2) | part[index % 3];
+}
+
+template <bool WithBound, int... I>
+auto step_kernel_of(Effects effects, std::integer_sequence<int, I...>)
 {
   using Kernel = void (*)(StepArguments);
-  const Kernel kernels[] = { step_kernel<strip_rows(static_cast<Effects>(Voxels)), WithBound, Voxels>... };
-  return kernels[static_cast<int>(voxel_part(effects))];
+  const Kernel kernels[] = { step_kernel<strip_rows(set_of(I)), WithBound, int(set_of(I))>... };
+  return kernels[index_of(effects)];
 }
 
 }  // namespace
@@ -65,9 +79,9 @@ cudaError_t launch_steps(const StepArguments& arguments, const StepLaunch& launc
   const bool with_bound = arguments.frequency_bound != nullptr &&
                           (arguments.bound_every_step || arguments.step_begin + 1 == arguments.steps);
   cudaError_t status = cudaSuccess;
-  if (arguments.law_count > 0)
-    status = launch_law_stress(arguments, with_bound, stream);
-  constexpr auto sets = std::make_integer_sequence<int, voxel_sets>();
+  if ((launch.effects & Effects::added) == Effects::added)
+    status = launch_added_stress(arguments, with_bound, stream);
+  constexpr auto sets = std::make_integer_sequence<int, cuda::strip_sets>();
   const auto kernel =
       with_bound ? cuda::step_kernel_of<true>(launch.effects, sets) : cuda::step_kernel_of<false>(launch.effects, sets);
   kernel<<<launch.blocks, launch.threads, 0, stream>>>(arguments);

@@ -61,39 +61,54 @@ __device__ __forceinline__ void add(RowForces& to, const RowForces& from)
   }
 }
 
-/// A voxel of a strip. The stress of its laws other than neo-Hookean was computed before the step.
+/// A voxel of a strip. With Effects::added, the stress of its fibres and of its laws other than neo-Hookean was
+/// computed before the step.
 template <Effects With>
 struct StripVoxel : ElementVoxel<With>
 {
   using Kinematics = physics::Kinematics<float>;
-  std::uint32_t law_word;  ///< second word of its slot
+  using Stress = physics::Matrix3<float>;
+  const AddedStress& added;
 
-  __device__ __forceinline__ bool has_laws() const
+  __device__ __forceinline__ bool has_laws() const { return has<With, Effects::added>; }
+  __device__ __forceinline__ void add_laws(const Kinematics&, Stress&) const {}
+  __device__ __forceinline__ void add_fibres(const Kinematics& k, Stress& P) const
   {
-    return has<With, Effects::fibres> && (law_word & has_law_voxel) != 0;
-  }
-  __device__ __forceinline__ float law_number(int n) const
-  {
-    return this->g.law_stress[n * this->g.law_count + (law_word & ~has_law_voxel)];
-  }
-  __device__ __forceinline__ void add_laws(const Kinematics&, physics::Matrix3<float>& P) const
-  {
+    if constexpr (!has<With, Effects::added>)
+      return ElementVoxel<With>::add_fibres(k, P);
+    const float of[9] = { added.xx_to_yx.x, added.xx_to_yx.y, added.xx_to_yx.z, added.xx_to_yx.w, added.yy_to_zy.x,
+                          added.yy_to_zy.y, added.yy_to_zy.z, added.yy_to_zy.w, added.zz };
 #pragma unroll
     for (int n = 0; n < 9; ++n)
-      P.a[n / 3][n % 3] += law_number(n);
+      P.a[n / 3][n % 3] += of[n];
   }
-  __device__ __forceinline__ float law_stiffening(const Kinematics&) const { return law_number(9); }
+  __device__ __forceinline__ float law_stiffening(const Kinematics&) const { return added.stiffening; }
   __device__ __forceinline__ float stiffness_now(const Kinematics& k) const { return physics::stiffness_now(*this, k); }
 };
+
+/// What a voxel with this palette entry adds to the neo-Hookean stress. The entries of added voxels are the first ones
+/// after entry 0.
+template <Effects With>
+__device__ __forceinline__ AddedStress fetch_added(const StepArguments& g, std::uint32_t palette)
+{
+  AddedStress added{};
+  if (has<With, Effects::added> && palette - 1 < g.added_count)
+  {
+    const float4* const from = reinterpret_cast<const float4*>(g.added_stress + (palette - 1));
+    const float4 last = __ldg(from + 2);
+    added = { __ldg(from), __ldg(from + 1), last.x, last.y };
+  }
+  return added;
+}
 
 /// Forces of the voxel between rows a and b of the lower and upper planes of nodes: the y and z steps of the transform,
 /// the forces on the modes, and the transposed z and y steps.
 template <Effects With>
-__device__ __forceinline__ void voxel_forces(const StepArguments& g, const ElementPlace& place, std::uint32_t law_word,
-                                             const Activations& activation, const RowValues& below_a,
-                                             const RowValues& below_b, const RowValues& above_a,
-                                             const RowValues& above_b, bool with_bound, float& stiffness,
-                                             RowForces force[2][2])
+__device__ __forceinline__ void voxel_forces(const StepArguments& g, const ElementPlace& place,
+                                             const Activations& activation, const AddedStress& added,
+                                             const RowValues& below_a, const RowValues& below_b,
+                                             const RowValues& above_a, const RowValues& above_b, bool with_bound,
+                                             float& stiffness, RowForces force[2][2])
 {
   float mode[3][8];
 #pragma unroll
@@ -110,7 +125,7 @@ __device__ __forceinline__ void voxel_forces(const StepArguments& g, const Eleme
       mode[c][q + 4] = high[q] - low[q];
     }
   }
-  const StripVoxel<With> voxel{ element_voxel<With>(g, place, activation, 0), law_word };
+  const StripVoxel<With> voxel{ element_voxel<With>(g, place, activation, 0), added };
   element_forces(voxel, mode, with_bound, stiffness);
 #pragma unroll
   for (int c = 0; c < 3; ++c)
@@ -214,6 +229,7 @@ __device__ __forceinline__ void sweep_strip(const StepArguments& g, const Strip&
 #pragma unroll
     for (int r = 0; r <= Rows; ++r)
     {
+      const AddedStress added = fetch_added<With>(g, here[r].y);
       const RowValues above_b = transform_x(raw_b);
       if (r + 2 < nodes)
         raw_b = displacement(u, above_slot[r + 2]);
@@ -238,10 +254,8 @@ __device__ __forceinline__ void sweep_strip(const StepArguments& g, const Strip&
       if (__any_sync(whole_warp, here[r].y != 0))
       {
         place.palette = here[r].y;
-        if (has<With, Effects::fibres> && (here[r].y & has_law_voxel) != 0)
-          place.palette = __ldg(&g.law_voxels[here[r].y & ~has_law_voxel].palette);
-        voxel_forces<With>(g, place, here[r].y, activation, below[r], below[r + 1], above_a, above_b, with_bound,
-                           stiffness, force);
+        voxel_forces<With>(g, place, activation, added, below[r], below[r + 1], above_a, above_b, with_bound, stiffness,
+                           force);
       }
       // A voxel adds the same stiffness to each of its nodes.
       if (with_bound && r > 0)

@@ -276,18 +276,34 @@ VoxelStrips::VoxelStrips(const Model& model, const StripSettings& settings) : ro
   }
 }
 
+namespace
+{
+
+// Fraction of entries for which has(entry) is true, in rows of lanes with any of them; 0 if there are none.
+template <class Entry, class Has>
+double filled_rows(const std::vector<Entry>& entries, const Has& has)
+{
+  std::size_t rows = 0, all = 0;
+  for (std::size_t row = 0; row < entries.size(); row += lanes)
+  {
+    const auto begin = entries.begin() + static_cast<std::ptrdiff_t>(row);
+    const auto here = static_cast<std::size_t>(std::count_if(begin, begin + lanes, has));
+    rows += here > 0;
+    all += here;
+  }
+  return rows > 0 ? static_cast<double>(all) / static_cast<double>(rows * lanes) : 0;
+}
+
+}  // namespace
+
 double VoxelStrips::filled() const
 {
-  std::size_t rows_taken = 0, voxels = 0;
-  for (std::size_t row = 0; row < slots.size(); row += lanes)
-  {
-    std::size_t here = 0;
-    for (int lane = 0; lane < lanes; ++lane)
-      here += slots[row + lane].voxel > 0;
-    rows_taken += here > 0;
-    voxels += here;
-  }
-  return rows_taken > 0 ? static_cast<double>(voxels) / static_cast<double>(rows_taken * lanes) : 0;
+  return filled_rows(slots, [](const StripSlot& slot) { return slot.voxel > 0; });
+}
+
+double VoxelStrips::filled_by_fibres() const
+{
+  return filled_rows(fibre_words, [](std::uint32_t word) { return word > 0; });
 }
 
 }  // namespace frontalis

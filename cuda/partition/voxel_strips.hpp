@@ -53,8 +53,10 @@ struct VoxelStrips
   std::vector<std::uint32_t> fibre_words;  ///< fibre_word() of each entry; 0: none
   std::vector<std::uint32_t> device_node;  ///< number of each model node on the device
 
-  /// Fraction of the entries that have a voxel.
+  /// Fraction of the entries that have a voxel, in rows with any.
   double filled() const;
+  /// Fraction of the entries that have fibres, in rows with any; 0 without fibres.
+  double filled_by_fibres() const;
 };
 
 }  // namespace frontalis

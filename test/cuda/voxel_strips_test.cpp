@@ -169,6 +169,16 @@ TEST(VoxelStrips, CarryTheFibresOfTheVoxelsThatHaveThem)
   EXPECT_GT(without, 0u);
 }
 
+TEST(VoxelStrips, TellHowManyLanesHaveFibres)
+{
+  test::BlockSettings s;
+  s.voxels = { { 29, 5, 6 } };
+  const Model block = test::block_model(s);
+  EXPECT_EQ(VoxelStrips(block, { 2, 4 }).filled_by_fibres(), 0);
+  // The 14 last voxels of each row have a fibre.
+  EXPECT_DOUBLE_EQ(VoxelStrips(with_fibres(block, 15), { 2, 4 }).filled_by_fibres(), 14.0 / lanes);
+}
+
 // The most expensive strips must start first.
 TEST(VoxelStrips, BeginWithThoseThatHaveFibres)
 {
