@@ -33,8 +33,26 @@ struct HashEntry
   }
 };
 
-// Throws BackendUnavailable if the largest arrays (nodes, patches or strips, fibres) exceed the free memory.
-void expect_room(const Model& model, const VoxelCut& cut)
+// The voxels whose stress a kernel computes before each step: those with fibres or with laws other than neo-Hookean,
+// unless the laws are computed at Gauss points.
+std::vector<std::uint32_t> added_voxels(const Model& model, const Discretisation& discretisation, const VoxelCut& cut)
+{
+  std::vector<std::uint32_t> voxels;
+  for (std::uint32_t e = 0; cut.stress_apart && e < model.voxels.size(); ++e)
+  {
+    bool any = !model.fibre_muscle.empty() && model.fibre_begin[e] < model.fibre_begin[e + std::size_t{ 1 }];
+    for (auto m = model.mixture_begin[e]; m < model.mixture_begin[e + std::size_t{ 1 }]; ++m)
+      any = any || (!discretisation.selective_reduced && model.mixture_proportion[m] > 0 &&
+                    model.materials[model.mixture_material[m]].law != Law::neo_hookean);
+    if (any)
+      voxels.push_back(e);
+  }
+  return voxels;
+}
+
+// Throws BackendUnavailable if the largest arrays (nodes, patches or strips, fibres, added voxels) exceed the free
+// memory.
+void expect_room(const Model& model, const Discretisation& discretisation, const VoxelCut& cut)
 {
   const std::size_t node_bytes = 2 * sizeof(float4) + 3 * sizeof(float);
   std::size_t wanted =
@@ -45,27 +63,13 @@ void expect_room(const Model& model, const VoxelCut& cut)
               model.nodes.size() * (sizeof(uint4) + sizeof(std::int32_t));
   else
     wanted += cut.strips->slots.size() * sizeof(StripSlot) + cut.strips->fibre_words.size() * sizeof(std::uint32_t);
+  wanted += added_voxels(model, discretisation, cut).size() *
+            (sizeof(AddedVoxel) + sizeof(AddedStress) + sizeof(float4) + sizeof(LawEntry));
   std::size_t free = 0, total = 0;
   require(cudaMemGetInfo(&free, &total), "asking for free memory");
   if (wanted > free)
     throw BackendUnavailable(
         fmt::format("backend cuda: the model needs {} bytes of device memory, {} of {} are free", wanted, free, total));
-}
-
-// The voxels with fibres or with laws other than neo-Hookean, unless these are computed at Gauss points.
-std::vector<std::uint32_t> voxels_with_added_stress(const Model& model, const Discretisation& discretisation)
-{
-  std::vector<std::uint32_t> voxels;
-  for (std::uint32_t e = 0; e < model.voxels.size(); ++e)
-  {
-    bool any = !model.fibre_muscle.empty() && model.fibre_begin[e] < model.fibre_begin[e + std::size_t{ 1 }];
-    for (auto m = model.mixture_begin[e]; m < model.mixture_begin[e + std::size_t{ 1 }]; ++m)
-      any = any || (!discretisation.selective_reduced && model.mixture_proportion[m] > 0 &&
-                    model.materials[model.mixture_material[m]].law != Law::neo_hookean);
-    if (any)
-      voxels.push_back(e);
-  }
-  return voxels;
 }
 
 }  // namespace
@@ -92,14 +96,14 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
 
 DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisation, VoxelCut&& cut)
     : most_effects_(effects_of(model, discretisation, cut.strips != nullptr)),
-      device_node_((expect_room(model, cut), std::move(cut.device_node()))),
+      device_node_((expect_room(model, discretisation, cut), std::move(cut.device_node()))),
       loads_(model, discretisation, device_node_),
       viscosity_(model, discretisation, device_node_,
                  discretisation.viscous_terms > 0 ? cut.voxel_at() : std::vector<std::uint32_t>(),
                  cut.patches != nullptr),
       contacts_(model, device_node_)
 {
-  const auto added = cut.stress_apart ? voxels_with_added_stress(model, discretisation) : std::vector<std::uint32_t>();
+  const std::vector<std::uint32_t> added = added_voxels(model, discretisation, cut);
   if (!added.empty())
     most_effects_ =
         (most_effects_ & (Effects::viscosity | Effects::general_element | Effects::friction)) | Effects::added;

@@ -44,10 +44,11 @@ VoxelCut::VoxelCut(const Model& model, const CutChoice& choice)
   const bool laws = std::any_of(model.materials.begin(), model.materials.end(),
                                 [](const Material& material) { return material.law != Law::neo_hookean; });
   stress_apart = laws || strips->filled_by_fibres() < dense_fibres;
-  // Strips with fibres take longer than others, which more and shorter strips make up for.
+  // Strips that compute fibres take longer than others, which more and shorter strips make up for.
   while (stress_apart && strips->strips.size() > choice.most_strips && cutting.planes < choice.most_planes)
   {
-    ++cutting.planes;
+    const double wanted = cutting.planes * (static_cast<double>(strips->strips.size()) / choice.most_strips);
+    cutting.planes = std::clamp(static_cast<int>(wanted), cutting.planes + 1, choice.most_planes);
     strips = std::make_unique<VoxelStrips>(model, cutting);
   }
 }

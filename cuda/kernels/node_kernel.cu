@@ -7,9 +7,9 @@ namespace cuda
 
 constexpr int block = 128;
 
-// In strips, nodes are restricted and loaded by a kernel of its own after each step. In the step kernel, a warp with
-// many such nodes would take several times as long as the others, and all of them would wait for it. With: effects of
-// nodes. It is an int, because nvcc cannot name a combination of enumerators.
+// In strips this kernel restricts and loads nodes after each step. In the step kernel, a warp with many such nodes
+// would take several times as long as the others, and all of them would wait for it. With: effects of nodes, as an int,
+// because nvcc cannot name a combination of enumerators.
 template <int With>
 __global__ void __launch_bounds__(block, 4) run_tasks(const __grid_constant__ StepArguments g)
 {

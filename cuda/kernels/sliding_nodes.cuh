@@ -180,6 +180,7 @@ __device__ __forceinline__ void glide_here(const StepArguments& g, std::int32_t 
         { static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z) } };
 }
 
+/// The same as a function for the table in node_tasks.cuh.
 template <Effects With>
 static __device__ __noinline__ void glide(const StepArguments& g, std::int32_t index, const NodeStep& at, NodeState& n)
 {

@@ -74,13 +74,16 @@ struct StripVoxel : ElementVoxel<With>
   __device__ __forceinline__ void add_laws(const Kinematics&, Stress&) const {}
   __device__ __forceinline__ void add_fibres(const Kinematics& k, Stress& P) const
   {
-    if constexpr (!has<With, Effects::added>)
-      return ElementVoxel<With>::add_fibres(k, P);
-    const float of[9] = { added.xx_to_yx.x, added.xx_to_yx.y, added.xx_to_yx.z, added.xx_to_yx.w, added.yy_to_zy.x,
-                          added.yy_to_zy.y, added.yy_to_zy.z, added.yy_to_zy.w, added.zz };
+    if constexpr (has<With, Effects::added>)
+    {
+      const float of[9] = { added.xx_to_yx.x, added.xx_to_yx.y, added.xx_to_yx.z, added.xx_to_yx.w, added.yy_to_zy.x,
+                            added.yy_to_zy.y, added.yy_to_zy.z, added.yy_to_zy.w, added.zz };
 #pragma unroll
-    for (int n = 0; n < 9; ++n)
-      P.a[n / 3][n % 3] += of[n];
+      for (int n = 0; n < 9; ++n)
+        P.a[n / 3][n % 3] += of[n];
+    }
+    else
+      ElementVoxel<With>::add_fibres(k, P);
   }
   __device__ __forceinline__ float law_stiffening(const Kinematics&) const { return added.stiffening; }
   __device__ __forceinline__ float stiffness_now(const Kinematics& k) const { return physics::stiffness_now(*this, k); }
@@ -229,6 +232,7 @@ __device__ __forceinline__ void sweep_strip(const StepArguments& g, const Strip&
 #pragma unroll
     for (int r = 0; r <= Rows; ++r)
     {
+      // This is requested before it is needed, because a warp would wait for it.
       const AddedStress added = fetch_added<With>(g, here[r].y);
       const RowValues above_b = transform_x(raw_b);
       if (r + 2 < nodes)
