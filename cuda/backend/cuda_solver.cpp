@@ -19,7 +19,7 @@ namespace cuda
 CudaSolver::CudaSolver(const BackendInput& input, const std::string& remark)
     : StepBackend(input),
       remark_(remark.empty() ? "" : "; " + remark),
-      device_(*model_, discretisation_, choose_cut(*model_, effects_of(*model_, discretisation_))),
+      device_(*model_, discretisation_, choose_cut(*model_, effects_of(*model_, discretisation_, true))),
       skin_(*model_, device_.device_node(), model_->skin.vertices, model_->skin_binding, model_->skin.triangles),
       landmarks_(*model_, device_.device_node(), model_->landmark_positions, model_->landmark_binding, {})
 {

@@ -109,12 +109,13 @@ Effects DeviceModel::node_part(const std::vector<NodeTask>& tasks) const
 void DeviceModel::choose_effects(EffectSet running)
 {
   Effects least = most_effects_ & Effects::general_element;
-  if (running.has(Effect::contraction) || running.has(Effect::fibre_stiffness))
-    least = least | (most_effects_ & Effects::fibres);
+  const bool laws = !launch_.patches && laws_.size() > 0;
+  if (running.has(Effect::contraction) || running.has(Effect::fibre_stiffness) || laws)
+    least = least | (most_effects_ & (Effects::fibres | Effects::added));
   if (running.has(Effect::viscosity))
     least = least | (most_effects_ & Effects::viscosity);
   if (!launch_.patches && strip_rows(least) != strip_rows(most_effects_))
-    least = Effects::fibres;
+    least = least | (most_effects_ & (Effects::fibres | Effects::viscosity | Effects::added));
   effects_ = least | (effects_ & (Effects::sliding | Effects::tasks));
   if (running.has(Effect::sliding) && running.has(Effect::friction))
     effects_ = effects_ | (most_effects_ & Effects::friction);
@@ -163,6 +164,7 @@ void DeviceModel::list_arrays(Effect of_fibres, ArrayList& list)
   add(Effect::elasticity, "patches", patches_, patch_corners_, node_voxels_, patch_properties_, halo_);
   add(Effect::elasticity, "inverse masses", mobility_);
   add(Effect::elasticity, "palette", palette_, stabilisation_, law_begin_, laws_);
+  add(Effect::elasticity, "added stress", added_voxels_, added_stress_);
   add(of_fibres, "fibres", fibre_words_, fibre_muscle_, fibres_);
   add(Effect::rigid_nodes, "poses", rigid_);
   add(Effect::prescribed_displacement, "prescribed nodes", prescribed_);

@@ -33,8 +33,26 @@ struct HashEntry
   }
 };
 
-// Throws BackendUnavailable if the largest arrays (nodes, patches or strips, fibres) exceed the free memory.
-void expect_room(const Model& model, const VoxelCut& cut)
+// The voxels whose stress a kernel computes before each step: those with fibres or with laws other than neo-Hookean,
+// unless the laws are computed at Gauss points.
+std::vector<std::uint32_t> added_voxels(const Model& model, const Discretisation& discretisation, const VoxelCut& cut)
+{
+  std::vector<std::uint32_t> voxels;
+  for (std::uint32_t e = 0; cut.stress_apart && e < model.voxels.size(); ++e)
+  {
+    bool any = !model.fibre_muscle.empty() && model.fibre_begin[e] < model.fibre_begin[e + std::size_t{ 1 }];
+    for (auto m = model.mixture_begin[e]; m < model.mixture_begin[e + std::size_t{ 1 }]; ++m)
+      any = any || (!discretisation.selective_reduced && model.mixture_proportion[m] > 0 &&
+                    model.materials[model.mixture_material[m]].law != Law::neo_hookean);
+    if (any)
+      voxels.push_back(e);
+  }
+  return voxels;
+}
+
+// Throws BackendUnavailable if the largest arrays (nodes, patches or strips, fibres, added voxels) exceed the free
+// memory.
+void expect_room(const Model& model, const Discretisation& discretisation, const VoxelCut& cut)
 {
   const std::size_t node_bytes = 2 * sizeof(float4) + 3 * sizeof(float);
   std::size_t wanted =
@@ -45,6 +63,8 @@ void expect_room(const Model& model, const VoxelCut& cut)
               model.nodes.size() * (sizeof(uint4) + sizeof(std::int32_t));
   else
     wanted += cut.strips->slots.size() * sizeof(StripSlot) + cut.strips->fibre_words.size() * sizeof(std::uint32_t);
+  wanted += added_voxels(model, discretisation, cut).size() *
+            (sizeof(AddedVoxel) + sizeof(AddedStress) + sizeof(float4) + sizeof(LawEntry));
   std::size_t free = 0, total = 0;
   require(cudaMemGetInfo(&free, &total), "asking for free memory");
   if (wanted > free)
@@ -54,14 +74,14 @@ void expect_room(const Model& model, const VoxelCut& cut)
 
 }  // namespace
 
-Effects effects_of(const Model& model, const Discretisation& discretisation)
+Effects effects_of(const Model& model, const Discretisation& discretisation, bool in_strips)
 {
   Effects effects = Effects::none;
-  if (discretisation.assumed_strain || discretisation.selective_reduced || discretisation.laws)
+  if (discretisation.assumed_strain || discretisation.selective_reduced || (discretisation.laws && !in_strips))
     effects = effects | Effects::general_element;
   if (discretisation.viscous_terms > 0)
     effects = effects | Effects::viscosity;
-  if (!model.fibre_muscle.empty())
+  if (!model.fibre_muscle.empty() || (discretisation.laws && in_strips))
     effects = effects | Effects::fibres;
   for (const SlidingNode& node : model.sliding)
     if (model.constraint_surfaces[node.surface].friction > 0)
@@ -75,15 +95,20 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
 }
 
 DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisation, VoxelCut&& cut)
-    : most_effects_(effects_of(model, discretisation)),
-      device_node_((expect_room(model, cut), std::move(cut.device_node()))),
+    : most_effects_(effects_of(model, discretisation, cut.strips != nullptr)),
+      device_node_((expect_room(model, discretisation, cut), std::move(cut.device_node()))),
       loads_(model, discretisation, device_node_),
       viscosity_(model, discretisation, device_node_,
                  discretisation.viscous_terms > 0 ? cut.voxel_at() : std::vector<std::uint32_t>(),
                  cut.patches != nullptr),
       contacts_(model, device_node_)
 {
-  palette_of_voxel_ = add_palette(model, discretisation);
+  const std::vector<std::uint32_t> added = added_voxels(model, discretisation, cut);
+  if (!added.empty())
+    most_effects_ =
+        (most_effects_ & (Effects::viscosity | Effects::general_element | Effects::friction)) | Effects::added;
+  palette_of_voxel_ = add_palette(model, discretisation, added);
+  add_added_voxels(model, added);
   add_fibres(model, discretisation);
   std::vector<NodeTask> tasks = add_tasks(model);
   // Nodes that never move have no inverse mass.
@@ -99,7 +124,7 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
   if (cut.patches)
     add_patches(model, *cut.patches, cut.part_room, tasks, palette_of_voxel_);
   else
-    add_strips(*cut.strips, tasks, palette_of_voxel_);
+    add_strips(*cut.strips);
   most_effects_ = most_effects_ | node_part(tasks);
   effects_ = most_effects_;
   choose_kernel();
@@ -122,11 +147,15 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
   g.stabilisation = stabilisation_.data();
   g.law_begin = law_begin_.data();
   g.laws = laws_.data();
+  g.added_voxels = added_voxels_.data();
+  g.added_stress = added_stress_.data();
+  g.added_count = static_cast<std::uint32_t>(added_voxels_.size());
   g.muscles = static_cast<std::int32_t>(model.muscles.size());
   g.fibre_words = fibre_words_.data();
   g.fibres = fibres_.data();
   g.fibre_muscle = fibre_muscle_.data();
   g.tasks = tasks_.data();
+  g.task_count = static_cast<std::uint32_t>(tasks_.size());
   g.load_parts = loads_.parts();
   g.load_begin = loads_.begin();
   g.vertex_force = loads_.vertex_force();
@@ -157,8 +186,10 @@ StepArguments DeviceModel::arguments(bool idle_parts) const
   return g;
 }
 
-// Voxels with equal properties share a palette entry; entry 0 has no stiffness. Returns the entry of each voxel.
-std::vector<std::uint32_t> DeviceModel::add_palette(const Model& model, const Discretisation& d)
+// Voxels with equal properties share a palette entry; entry 0 has no stiffness. The first voxels, `added`, have entries
+// of their own, so that the entry is also the place of their added stress. Returns the entry of each voxel.
+std::vector<std::uint32_t> DeviceModel::add_palette(const Model& model, const Discretisation& d,
+                                                    const std::vector<std::uint32_t>& added)
 {
   const bool stabilised = d.assumed_strain;
   std::vector<float4> entries(1, float4{ 0, 0, 0, 0 });
@@ -170,7 +201,14 @@ std::vector<std::uint32_t> DeviceModel::add_palette(const Model& model, const Di
   Entry latest, entry;
   std::uint32_t index = 0;
   VoxelProperties voxel;
-  for (std::size_t e = 0; e < model.voxels.size(); ++e)
+  std::vector<std::uint32_t> order = added;
+  std::vector<char> is_added(model.voxels.size(), 0);
+  for (const std::uint32_t e : added)
+    is_added[e] = 1;
+  for (std::uint32_t e = 0; e < model.voxels.size(); ++e)
+    if (is_added[e] == 0)
+      order.push_back(e);
+  for (const std::uint32_t e : order)
   {
     d.voxel(e, voxel);
     entry.clear();
@@ -189,10 +227,13 @@ std::vector<std::uint32_t> DeviceModel::add_palette(const Model& model, const Di
       for (const double x : part.parameters)
         entry.push_back(static_cast<float>(x));
     }
-    if (index == 0 || entry != latest)
+    if (is_added[e] != 0 || index == 0 || entry != latest)
     {
-      const auto found = known.emplace(entry, static_cast<std::uint32_t>(entries.size()));
-      if (found.second)
+      index = static_cast<std::uint32_t>(entries.size());
+      const auto found = is_added[e] != 0 ? known.end() : known.emplace(entry, index).first;
+      if (found != known.end())
+        index = found->second;
+      if (index == entries.size())
       {
         entries.push_back(float4{ entry[0], entry[1], entry[2], entry[3] });
         std::size_t at = 4;
@@ -210,10 +251,11 @@ std::vector<std::uint32_t> DeviceModel::add_palette(const Model& model, const Di
         }
         law_begin.push_back(static_cast<std::uint32_t>(laws.size()));
       }
-      index = found.first->second;
       latest = entry;
     }
     entry_of[e] = index;
+    // The next voxel with an entry that may be shared must not take this one.
+    index = is_added[e] != 0 ? 0 : index;
   }
   viscosity_.set_palette(entry_of);
   palette_ = DeviceArray<float4>(entries);
@@ -224,6 +266,20 @@ std::vector<std::uint32_t> DeviceModel::add_palette(const Model& model, const Di
     laws_ = DeviceArray<LawEntry>(laws);
   }
   return entry_of;
+}
+
+void DeviceModel::add_added_voxels(const Model& model, const std::vector<std::uint32_t>& added)
+{
+  std::vector<AddedVoxel> voxels;
+  for (const std::uint32_t e : added)
+  {
+    AddedVoxel voxel{ {}, fibre_word(model, e) };
+    for (int b = 0; b < 8; ++b)
+      voxel.node[b] = device_node_[model.voxel_nodes[e][b]];
+    voxels.push_back(voxel);
+  }
+  added_voxels_ = DeviceArray<AddedVoxel>(voxels);
+  added_stress_ = DeviceArray<AddedStress>(voxels.size());
 }
 
 void DeviceModel::add_fibres(const Model& model, const Discretisation& discretisation)
@@ -242,7 +298,8 @@ void DeviceModel::add_fibres(const Model& model, const Discretisation& discretis
   fibre_muscle_ = DeviceArray<std::uint32_t>(muscle_words(model, EffectSet::all()));
 }
 
-// Lists the loads and restrictions of nodes, sorted by device node. Nodes that never move have no tasks.
+// Lists the loads and restrictions of nodes. Nodes that never move have no tasks. Tasks are sorted by the kinds of
+// their effects, so that the threads of a warp do the same, and then by device node.
 std::vector<NodeTask> DeviceModel::add_tasks(const Model& model)
 {
   std::vector<NodeTask> task_of(model.nodes.size(), NodeTask{ 0, { -1, -1, -1, -1, -1 } });
@@ -292,7 +349,14 @@ std::vector<NodeTask> DeviceModel::add_tasks(const Model& model)
     else if (std::any_of(std::begin(t.of), std::end(t.of), [](std::int32_t index) { return index >= 0; }))
       tasks.push_back(t);
   }
-  std::sort(tasks.begin(), tasks.end(), [](const NodeTask& a, const NodeTask& b) { return a.node < b.node; });
+  const auto key = [](const NodeTask& task)
+  {
+    std::uint32_t kinds = 0;
+    for (int effect = 0; effect < node_effects; ++effect)
+      kinds |= task.of[effect] < 0 ? 0 : 1u << effect;
+    return std::make_pair(kinds, task.node);
+  };
+  std::sort(tasks.begin(), tasks.end(), [&](const NodeTask& a, const NodeTask& b) { return key(a) < key(b); });
   prescribed_ = DeviceArray<PrescribedMotion>(prescribed);
   rigid_ = DeviceArray<RigidMotion>(rigid);
   return tasks;

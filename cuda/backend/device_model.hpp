@@ -19,8 +19,8 @@ namespace cuda
 /// Returns StepArguments::fibre_muscle: one word per fibre.
 std::vector<std::uint32_t> muscle_words(const Model& model, EffectSet running);
 
-/// The effects that a model's kernels must compute because of its voxels and of friction.
-Effects effects_of(const Model& model, const Discretisation& discretisation);
+/// The effects that a model's kernels must compute because of its voxels and of friction, in strips or in patches.
+Effects effects_of(const Model& model, const Discretisation& discretisation, bool in_strips);
 
 /// Choice between patches, if they fit into shared memory, and strips.
 struct CutChoice
@@ -28,6 +28,8 @@ struct CutChoice
   PatchSettings patches{ 0, 0 };  ///< number of turns (patches per block) to try first; 0 turns: use strips
   std::size_t patch_bytes = 0;    ///< shared memory available for the patches of a block
   StripSettings strips;
+  std::size_t most_strips = 0;  ///< number of strips that the device runs at the same time
+  int most_planes = 0;          ///< strips may get up to this number of planes so that there are not more of them
 };
 
 /// The patches or strips of a model.
@@ -38,6 +40,9 @@ struct VoxelCut
   std::unique_ptr<VoxelPatches> patches;
   PartRoom part_room;                   ///< shared memory and threads for parts, if the model is cut into patches
   std::unique_ptr<VoxelStrips> strips;  ///< null if the model is cut into patches
+  /// Whether a kernel before each step computes the stress of fibres and of laws other than neo-Hookean; in strips, if
+  /// there are such laws, or fibres that fill few of the lanes
+  bool stress_apart = false;
 
   std::vector<std::uint32_t>& device_node() { return patches ? patches->device_node : strips->device_node; }
   /// For each entry of the partition, 1 + the index of its model voxel, or 0 if the entry is empty.
@@ -82,10 +87,12 @@ public:
 
 private:
   DeviceModel(const Model& model, const Discretisation& discretisation, VoxelCut&& cut);
-  std::vector<std::uint32_t> add_palette(const Model& model, const Discretisation& discretisation);
+  std::vector<std::uint32_t> add_palette(const Model& model, const Discretisation& discretisation,
+                                         const std::vector<std::uint32_t>& added);
   void add_fibres(const Model& model, const Discretisation& discretisation);
   std::vector<NodeTask> add_tasks(const Model& model);
-  void add_strips(VoxelStrips& strips, std::vector<NodeTask>& tasks, const std::vector<std::uint32_t>& palette_entry);
+  void add_strips(VoxelStrips& strips);
+  void add_added_voxels(const Model& model, const std::vector<std::uint32_t>& added);
   void add_patches(const Model& model, const VoxelPatches& patches, const PartRoom& for_parts,
                    const std::vector<NodeTask>& tasks, const std::vector<std::uint32_t>& palette_entry);
   void run_fibres(const Model& model, const Discretisation& discretisation, EffectSet running);
@@ -125,6 +132,8 @@ private:
   DeviceArray<float4> palette_, stabilisation_;
   DeviceArray<std::uint32_t> law_begin_;
   DeviceArray<LawEntry> laws_;
+  DeviceArray<AddedVoxel> added_voxels_;
+  DeviceArray<AddedStress> added_stress_;
   DeviceArray<std::uint32_t> fibre_words_, fibre_muscle_;
   DeviceArray<float4> fibres_;
   DeviceArray<NodeTask> tasks_;

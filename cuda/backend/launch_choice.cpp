@@ -66,12 +66,14 @@ CutChoice choose_cut(const Model& model, Effects effects)
   cut.patch_bytes = bytes_for_patches();
   cut.patches = { processors, from_environment("FRONTALIS_CUDA_PATCHES",
                                                expected_turns(model, processors, cut.patch_bytes), 0, most_turns) };
-  // All strips should run at the same time, with 10 % to spare, because a few that start later would double the time.
-  const double warps = 0.9 * strip_blocks(effects) * (step_block / 32) * processors;
+  // All strips should run at the same time, because a few that start later would double the time.
+  cut.most_strips = static_cast<std::size_t>(strip_blocks(effects)) * (step_block / 32) * processors;
   cut.strips.rows = strip_rows(effects);
-  const double planes = static_cast<double>(model.nodes.size()) / 28 / cut.strips.rows / warps;
-  cut.strips.planes =
-      from_environment("FRONTALIS_CUDA_PLANES", static_cast<int>(std::clamp(planes, 1.0, 32.0)), 1, 4096);
+  const double planes =
+      static_cast<double>(model.nodes.size()) / 28 / cut.strips.rows / (0.9 * static_cast<double>(cut.most_strips));
+  const int wanted = from_environment("FRONTALIS_CUDA_PLANES", 0, 1, 4096);
+  cut.most_planes = wanted > 0 ? 0 : 32;
+  cut.strips.planes = wanted > 0 ? wanted : static_cast<int>(std::clamp(planes, 1.0, 32.0));
   return cut;
 }
 

@@ -127,19 +127,22 @@ struct ElementVoxel : PaletteVoxel<float, With>
   }
 };
 
-/// Replaces the transformed displacements of a voxel by the forces conjugate to them. `relaxes`: time by which viscous
-/// stresses relax before the forces are computed [s]. Palette entry 0 has no stiffness, so that places without a voxel
-/// yield exact zeros. `stiffness` must be 0 before the call; if `with_bound` is set, it becomes the bound of the
-/// present stiffness [N/m].
+/// A voxel at a place. `relaxes`: time by which viscous stresses relax before the forces are computed [s].
 template <Effects With>
-__device__ __forceinline__ void element_forces(const StepArguments& g, const ElementPlace& place,
-                                               const Activations& activation, float relaxes, float (&mode)[3][8],
-                                               bool with_bound, float& stiffness)
+__device__ __forceinline__ ElementVoxel<With> element_voxel(const StepArguments& g, const ElementPlace& place,
+                                                            const Activations& activation, float relaxes)
 {
-  const ElementVoxel<With> voxel{
-    { g, place.palette, place.viscous - 1, __ldg(g.palette + place.palette) }, place, activation, relaxes
-  };
-  const auto P = physics::element_stress(voxel, mode, with_bound && place.palette != 0, stiffness);
+  return { { g, place.palette, place.viscous - 1, __ldg(g.palette + place.palette) }, place, activation, relaxes };
+}
+
+/// Replaces the transformed displacements of a voxel by the forces conjugate to them. Palette entry 0 has no stiffness,
+/// so that places without a voxel yield exact zeros. `stiffness` must be 0 before the call; if `with_bound` is set, it
+/// becomes the bound of the present stiffness [N/m].
+template <class Voxel>
+__device__ __forceinline__ void element_forces(const Voxel& voxel, float (&mode)[3][8], bool with_bound,
+                                               float& stiffness)
+{
+  const auto P = physics::element_stress(voxel, mode, with_bound && voxel.palette != 0, stiffness);
 #pragma unroll
   for (int c = 0; c < 3; ++c)
     physics::stress_forces(voxel, P, c, mode[c]);

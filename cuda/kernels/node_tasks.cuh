@@ -85,41 +85,6 @@ static __device__ __noinline__ void apply_task(const StepArguments& g, const Nod
       node_functions<With>[effect](g, task.of[effect], at, n);
 }
 
-/// Applies a task after its node's update was written. This function is not inlined, which saves registers in the sweep
-/// through a strip.
-template <Effects With>
-static __device__ __noinline__ void run_task(const StepArguments& g, std::uint32_t index, const float4* u, float4* next,
-                                             int step)
-{
-  // All loads are issued at once, because memory latency dominates here.
-  const NodeTask task = g.tasks[index];
-  const std::int32_t sliding = task.of[node_sliding];
-  const bool slides = has<With, Effects::sliding> && slides_only(task);
-  SlidingFetch fetch;
-  if (slides)
-    fetch_sliding<With>(g, sliding, fetch);
-  const float4 before = u[task.node], now = next[task.node];
-  NodeState n{ { now.x, now.y, now.z }, { g.v[0][task.node], g.v[1][task.node], g.v[2][task.node] } };
-  // The inverse mass is taken from the new buffer, because a step may never have written it to the old one.
-  const float4 old = make_float4(before.x, before.y, before.z, now.w);
-  if (slides)
-    slide<With>(g, sliding, { old, task.node, step }, fetch, n);
-  else
-    apply_task<With>(g, task, old, step, n);
-  next[task.node] = make_float4(n.u[0], n.u[1], n.u[2], now.w);
-  for (int i = 0; i < 3; ++i)
-    g.v[i][task.node] = n.v[i];
-}
-
-/// Applies tasks [begin, end). All threads of a warp must call this function. `With`: effects of nodes.
-template <Effects With>
-__device__ __forceinline__ void run_tasks(const StepArguments& g, std::uint32_t begin, std::uint32_t end,
-                                          const float4* u, float4* next, int step)
-{
-  for (std::uint32_t t = begin + (threadIdx.x & 31); t < end; t += 32)
-    run_task<With>(g, t, u, next, step);
-}
-
 /// Data for the update of a node, loaded before the stress is computed.
 struct NodeFetch
 {

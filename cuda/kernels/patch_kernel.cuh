@@ -93,7 +93,7 @@ __device__ __forceinline__ void put_forces(const StepArguments& g, const VoxelFe
   for (int c = 0; c < 3; ++c)
     physics::walsh_hadamard(mode[c]);
   float stiffness = 0;
-  element_forces<With>(g, voxel.place, activation, relaxes, mode, with_bound, stiffness);
+  element_forces(element_voxel<With>(g, voxel.place, activation, relaxes), mode, with_bound, stiffness);
   if (with_bound)
     memory.force[24 * memory.width + column] = stiffness;
 #pragma unroll

@@ -158,7 +158,7 @@ static __device__ __noinline__ void keep_distance(const StepArguments& g, std::i
 /// Step of a node that slides on a surface that moves with a bone. Only the plane is in single precision, so that
 /// conversions between the frames do not move a node at rest.
 template <Effects With>
-static __device__ __noinline__ void glide(const StepArguments& g, std::int32_t index, const NodeStep& at, NodeState& n)
+__device__ __forceinline__ void glide_here(const StepArguments& g, std::int32_t index, const NodeStep& at, NodeState& n)
 {
   using Point = physics::Vec3<double>;
   const GlidingNode node = g.gliding[index];
@@ -178,6 +178,13 @@ static __device__ __noinline__ void glide(const StepArguments& g, std::int32_t i
                      motion.surface_velocity, free, v);
   n = { { static_cast<float>(u.x), static_cast<float>(u.y), static_cast<float>(u.z) },
         { static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z) } };
+}
+
+/// The same as a function for the table in node_tasks.cuh.
+template <Effects With>
+static __device__ __noinline__ void glide(const StepArguments& g, std::int32_t index, const NodeStep& at, NodeState& n)
+{
+  glide_here<With>(g, index, at, n);
 }
 
 }  // namespace cuda

@@ -41,6 +41,13 @@ __host__ __device__ inline bool slides_only(const NodeTask& task)
          (task.of[node_load] & task.of[node_gliding] & task.of[node_prescribed] & task.of[node_rigid]) < 0;
 }
 
+/// Likewise for a node on a surface that moves with a bone.
+__host__ __device__ inline bool glides_only(const NodeTask& task)
+{
+  return task.of[node_gliding] >= 0 &&
+         (task.of[node_load] & task.of[node_sliding] & task.of[node_prescribed] & task.of[node_rigid]) < 0;
+}
+
 /// The part of a surface vertex's force that acts on a node.
 struct LoadPart
 {
@@ -99,6 +106,21 @@ struct LawEntry
   float parameters[physics::parameter_slots];  ///< ordered as in physics/materials/description.hpp
 };
 
+/// A voxel in strips whose AddedStress is computed before the step. Its palette entry is its index plus one.
+struct AddedVoxel
+{
+  std::uint32_t node[8];  ///< device nodes
+  std::uint32_t fibre_word;
+};
+
+/// What an added voxel adds to the neo-Hookean stress, times tissue volume.
+struct alignas(16) AddedStress
+{
+  float4 xx_to_yx, yy_to_zy;  ///< first Piola-Kirchhoff stress by rows, but for the last component [N m]
+  float zz;                   ///< that component [N m]
+  float stiffening;           ///< the laws' part of the stiffness bound [N/m]
+};
+
 /// Arguments of a launch that makes steps of equal length or computes internal forces. Pointers are to device memory.
 struct StepArguments : physics::Kick<float>
 {
@@ -126,7 +148,13 @@ struct StepArguments : physics::Kick<float>
   const float4* stabilisation;     ///< bending, coupling, torsion, warping [N m]; null: scalar hourglass control
   const std::uint32_t* law_begin;  ///< first law other than neo-Hookean of each palette entry; null if there are none
   const LawEntry* laws;
-  bool selective_reduced;  ///< whether the isochoric stress is taken at eight Gauss points
+  // In strips, a kernel before each step may compute the stress of fibres and of laws other than neo-Hookean. In the
+  // step kernel a warp spends as long on one voxel that has them as on 32, so that it computes fibres itself only where
+  // they fill most of the lanes (VoxelCut::stress_apart), and laws only with selective reduced integration.
+  const AddedVoxel* added_voxels;
+  AddedStress* added_stress;
+  std::uint32_t added_count;  ///< number of added voxels
+  bool selective_reduced;     ///< whether the isochoric stress is taken at eight Gauss points
   /// 1 + index of the viscous voxel, or 0; in the order of slots or patch_properties; null: none
   const std::uint32_t* viscous_words;
   /// relaxed stress times tissue volume [N m] as [term][component][viscous voxel]; two terms are followed by their sum
@@ -146,6 +174,7 @@ struct StepArguments : physics::Kick<float>
 
   // Restricted and loaded nodes:
   const NodeTask* tasks;
+  std::uint32_t task_count;
   const LoadPart* load_parts;
   const std::int32_t* load_begin;
   const double* vertex_force;  ///< three per vertex, at the end of the ramp [N]
@@ -217,17 +246,18 @@ constexpr std::int32_t still = -0x7fffffff;
 
 /// Effects that a kernel computes. There is one kernel per set of effects, so that an effect that a model lacks takes
 /// neither registers nor instructions. Effects of few nodes are called through a table (node_tasks.cuh).
-enum class Effects : std::uint8_t
+enum class Effects : std::uint16_t
 {
   none = 0,  ///< neo-Hookean with scalar hourglass control
   fibres = 1,
   viscosity = 2,
   general_element = 4,  ///< laws, hourglass controls and integrations other than those of `none`
   sliding = 8,          ///< nodes that slide on surfaces
-  tasks = 16,           ///< effects in node_tasks.cuh; always set together with sliding
+  tasks = 16,           ///< effects in node_tasks.cuh; in kernels of patches always set together with sliding
   friction = 32,        ///< friction of sliding nodes
   contact = 64,         ///< contact with bodies, in patches; always set together with all effects of nodes
-  shell = 128           ///< layers that are shells, in patches; always set together with contact
+  shell = 128,          ///< layers that are shells, in patches; always set together with contact
+  added = 256           ///< in strips, instead of fibres: AddedStress
 };
 constexpr int voxel_sets = 8;  ///< number of sets of voxel effects, which are the first three bits
 constexpr Effects operator|(Effects a, Effects b) { return static_cast<Effects>(int(a) | int(b)); }
@@ -270,7 +300,10 @@ struct StepLaunch
 /// Rows of voxels in a strip, and blocks of the strip kernel per multiprocessor. More rows share more nodes but take
 /// more registers: a multiprocessor holds 16 warps with three rows but only 12 with four. Effects other than
 /// neo-Hookean elasticity leave registers for two rows only.
-constexpr int strip_rows(Effects effects) { return voxel_part(effects) == Effects::none ? 3 : 2; }
+constexpr int strip_rows(Effects effects)
+{
+  return voxel_part(effects) == Effects::none && (effects & Effects::added) == Effects::none ? 3 : 2;
+}
 constexpr int strip_blocks(Effects effects)
 {
   return (effects & (Effects::viscosity | Effects::general_element)) == Effects::none ? 4 : 3;
@@ -294,5 +327,9 @@ int resident_blocks(const StepLaunch& launch);
 /// Launches steps [step_begin, step_end) of the plan. Only patches can run several steps per launch.
 cudaError_t launch_steps(const StepArguments& arguments, const StepLaunch& launch, cudaStream_t stream);
 cudaError_t launch_patches(const StepArguments& arguments, const StepLaunch& launch, cudaStream_t stream);
+/// In strips: finds the stress of all added voxels before the step.
+cudaError_t launch_added_stress(const StepArguments& arguments, bool with_bound, cudaStream_t stream);
+/// In strips: applies the tasks of all nodes after their update. `effects`: those of nodes.
+cudaError_t launch_tasks(const StepArguments& arguments, Effects effects, cudaStream_t stream);
 
 }  // namespace frontalis

@@ -61,14 +61,57 @@ __device__ __forceinline__ void add(RowForces& to, const RowForces& from)
   }
 }
 
+/// A voxel of a strip. With Effects::added, the stress of its fibres and of its laws other than neo-Hookean was
+/// computed before the step.
+template <Effects With>
+struct StripVoxel : ElementVoxel<With>
+{
+  using Kinematics = physics::Kinematics<float>;
+  using Stress = physics::Matrix3<float>;
+  const AddedStress& added;
+
+  __device__ __forceinline__ bool has_laws() const { return has<With, Effects::added>; }
+  __device__ __forceinline__ void add_laws(const Kinematics&, Stress&) const {}
+  __device__ __forceinline__ void add_fibres(const Kinematics& k, Stress& P) const
+  {
+    if constexpr (has<With, Effects::added>)
+    {
+      const float of[9] = { added.xx_to_yx.x, added.xx_to_yx.y, added.xx_to_yx.z, added.xx_to_yx.w, added.yy_to_zy.x,
+                            added.yy_to_zy.y, added.yy_to_zy.z, added.yy_to_zy.w, added.zz };
+#pragma unroll
+      for (int n = 0; n < 9; ++n)
+        P.a[n / 3][n % 3] += of[n];
+    }
+    else
+      ElementVoxel<With>::add_fibres(k, P);
+  }
+  __device__ __forceinline__ float law_stiffening(const Kinematics&) const { return added.stiffening; }
+  __device__ __forceinline__ float stiffness_now(const Kinematics& k) const { return physics::stiffness_now(*this, k); }
+};
+
+/// What a voxel with this palette entry adds to the neo-Hookean stress. The entries of added voxels are the first ones
+/// after entry 0.
+template <Effects With>
+__device__ __forceinline__ AddedStress fetch_added(const StepArguments& g, std::uint32_t palette)
+{
+  AddedStress added{};
+  if (has<With, Effects::added> && palette - 1 < g.added_count)
+  {
+    const float4* const from = reinterpret_cast<const float4*>(g.added_stress + (palette - 1));
+    const float4 last = __ldg(from + 2);
+    added = { __ldg(from), __ldg(from + 1), last.x, last.y };
+  }
+  return added;
+}
+
 /// Forces of the voxel between rows a and b of the lower and upper planes of nodes: the y and z steps of the transform,
 /// the forces on the modes, and the transposed z and y steps.
 template <Effects With>
 __device__ __forceinline__ void voxel_forces(const StepArguments& g, const ElementPlace& place,
-                                             const Activations& activation, const RowValues& below_a,
-                                             const RowValues& below_b, const RowValues& above_a,
-                                             const RowValues& above_b, bool with_bound, float& stiffness,
-                                             RowForces force[2][2])
+                                             const Activations& activation, const AddedStress& added,
+                                             const RowValues& below_a, const RowValues& below_b,
+                                             const RowValues& above_a, const RowValues& above_b, bool with_bound,
+                                             float& stiffness, RowForces force[2][2])
 {
   float mode[3][8];
 #pragma unroll
@@ -85,7 +128,8 @@ __device__ __forceinline__ void voxel_forces(const StepArguments& g, const Eleme
       mode[c][q + 4] = high[q] - low[q];
     }
   }
-  element_forces<With>(g, place, activation, 0, mode, with_bound, stiffness);
+  const StripVoxel<With> voxel{ element_voxel<With>(g, place, activation, 0), added };
+  element_forces(voxel, mode, with_bound, stiffness);
 #pragma unroll
   for (int c = 0; c < 3; ++c)
 #pragma unroll
@@ -188,6 +232,8 @@ __device__ __forceinline__ void sweep_strip(const StepArguments& g, const Strip&
 #pragma unroll
     for (int r = 0; r <= Rows; ++r)
     {
+      // This is requested before it is needed, because a warp would wait for it.
+      const AddedStress added = fetch_added<With>(g, here[r].y);
       const RowValues above_b = transform_x(raw_b);
       if (r + 2 < nodes)
         raw_b = displacement(u, above_slot[r + 2]);
@@ -212,7 +258,7 @@ __device__ __forceinline__ void sweep_strip(const StepArguments& g, const Strip&
       if (__any_sync(whole_warp, here[r].y != 0))
       {
         place.palette = here[r].y;
-        voxel_forces<With>(g, place, activation, below[r], below[r + 1], above_a, above_b, with_bound, stiffness,
+        voxel_forces<With>(g, place, activation, added, below[r], below[r + 1], above_a, above_b, with_bound, stiffness,
                            force);
       }
       // A voxel adds the same stiffness to each of its nodes.

@@ -25,6 +25,37 @@ __device__ __forceinline__ physics::Kinematics<float> kinematics_of(const StepAr
   return physics::kinematics(mode[0], mode[1], mode[2], g.scale);
 }
 
+// Effects of voxels that find_added_stress() computes.
+inline constexpr Effects added_effects = Effects::fibres | Effects::general_element;
+
+// Finds the stress of one added voxel per thread. WithBound: also the part of its stiffness bound.
+template <bool WithBound>
+__global__ void __launch_bounds__(block) find_added_stress(const __grid_constant__ StepArguments g)
+{
+  __shared__ float2 activations[most_muscles];
+  load_activations(g, activations);
+  __syncthreads();
+  const std::uint32_t v = blockIdx.x * block + threadIdx.x;
+  if (v >= g.added_count)
+    return;
+  const AddedVoxel at = g.added_voxels[v];
+  ElementPlace place{};
+  place.palette = v + 1;
+  if (g.fibres != nullptr && at.fibre_word != 0)
+    fetch_fibre(g, at.fibre_word, place);
+  const auto k = kinematics_of(g, g.u[g.first], at.node);
+  const Activations activation = activations_at(g, g.step_begin, activations);
+  const ElementVoxel<added_effects> voxel = element_voxel<added_effects>(g, place, activation, 0);
+  physics::Matrix3<float> P{};
+  if (!g.selective_reduced)
+    physics::add_laws(voxel, k, P);
+  voxel.add_fibres(k, P);
+  const auto& p = P.a;
+  g.added_stress[v] = { make_float4(p[0][0], p[0][1], p[0][2], p[1][0]),
+                        make_float4(p[1][1], p[1][2], p[2][0], p[2][1]), p[2][2],
+                        WithBound ? physics::law_stiffening(voxel, k) : 0 };
+}
+
 __global__ void __launch_bounds__(block) relax(const __grid_constant__ StepArguments g, const ViscousVoxels viscous,
                                                const float4* u, const float4* u_before, float elapsed)
 {
@@ -158,6 +189,13 @@ int blocks(std::uint32_t count) { return static_cast<int>((count + block - 1) / 
 
 }  // namespace
 }  // namespace cuda
+
+cudaError_t launch_added_stress(const StepArguments& arguments, bool with_bound, cudaStream_t stream)
+{
+  const auto kernel = with_bound ? cuda::find_added_stress<true> : cuda::find_added_stress<false>;
+  kernel<<<cuda::blocks(arguments.added_count), cuda::block, 0, stream>>>(arguments);
+  return cudaGetLastError();
+}
 
 cudaError_t launch_relaxation(const StepArguments& arguments, const ViscousVoxels& viscous, const float4* u,
                               const float4* u_before, float elapsed, cudaStream_t stream)

@@ -213,7 +213,6 @@ VoxelStrips::VoxelStrips(const Model& model, const StripSettings& settings) : ro
 
   // Own nodes are numbered in the order in which a warp processes them.
   device_node.assign(model.nodes.size(), 0);
-  strip_of_node.assign(model.nodes.size(), 0);
   std::uint32_t next = 1;
   std::size_t slot_count = 0;
   for (std::size_t w = 0; w < warps.size(); ++w)
@@ -224,11 +223,7 @@ VoxelStrips::VoxelStrips(const Model& model, const StripSettings& settings) : ro
         for (const Piece& p : warps[w])
           if (p.k + plane >= p.own_k && p.k + plane < p.own_k + p.own_planes)
             builder.nodes.each(p.j + r, p.k + plane, p.i + p.own_first, p.own_count,
-                               [&](std::int32_t, std::uint32_t n)
-                               {
-                                 device_node[n] = next++;
-                                 strip_of_node[n] = static_cast<std::uint32_t>(w);
-                               });
+                               [&](std::int32_t, std::uint32_t n) { device_node[n] = next++; });
   }
   if (next != model.nodes.size() + 1 || slot_count >= 0xffffffffu)
     throw BackendUnavailable(fmt::format("backend cuda: the strips hold {} of {} nodes", next - 1, model.nodes.size()));
@@ -238,7 +233,7 @@ VoxelStrips::VoxelStrips(const Model& model, const StripSettings& settings) : ro
   for (const auto& warp : warps)
   {
     const std::int32_t planes = warp[0].planes;
-    strips.push_back({ static_cast<std::uint32_t>(slot), static_cast<std::uint32_t>(planes), Strip::none, 0, 0 });
+    strips.push_back({ static_cast<std::uint32_t>(slot), static_cast<std::uint32_t>(planes), Strip::none });
     bool fibres = false;
     for (std::int32_t plane = 0; plane < planes; ++plane)
       for (int r = -1; r <= rows; ++r, slot += lanes)
@@ -281,18 +276,34 @@ VoxelStrips::VoxelStrips(const Model& model, const StripSettings& settings) : ro
   }
 }
 
+namespace
+{
+
+// Fraction of entries for which has(entry) is true, in rows of lanes with any of them; 0 if there are none.
+template <class Entry, class Has>
+double filled_rows(const std::vector<Entry>& entries, const Has& has)
+{
+  std::size_t rows = 0, all = 0;
+  for (std::size_t row = 0; row < entries.size(); row += lanes)
+  {
+    const auto begin = entries.begin() + static_cast<std::ptrdiff_t>(row);
+    const auto here = static_cast<std::size_t>(std::count_if(begin, begin + lanes, has));
+    rows += here > 0;
+    all += here;
+  }
+  return rows > 0 ? static_cast<double>(all) / static_cast<double>(rows * lanes) : 0;
+}
+
+}  // namespace
+
 double VoxelStrips::filled() const
 {
-  std::size_t rows_taken = 0, voxels = 0;
-  for (std::size_t row = 0; row < slots.size(); row += lanes)
-  {
-    std::size_t here = 0;
-    for (int lane = 0; lane < lanes; ++lane)
-      here += slots[row + lane].voxel > 0;
-    rows_taken += here > 0;
-    voxels += here;
-  }
-  return rows_taken > 0 ? static_cast<double>(voxels) / static_cast<double>(rows_taken * lanes) : 0;
+  return filled_rows(slots, [](const StripSlot& slot) { return slot.voxel > 0; });
+}
+
+double VoxelStrips::filled_by_fibres() const
+{
+  return filled_rows(fibre_words, [](std::uint32_t word) { return word > 0; });
 }
 
 }  // namespace frontalis

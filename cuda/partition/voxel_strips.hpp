@@ -36,8 +36,6 @@ struct Strip
   std::uint32_t slot_begin;  ///< layout of slots: [plane][row 0 .. rows + 1][lane]
   std::uint32_t planes;
   std::uint32_t fibre_begin;  ///< layout of words: [plane][row 0 .. rows][lane]; no words without fibres
-  std::uint32_t task_begin;   ///< first task of the restricted or loaded nodes that this strip owns
-  std::uint32_t task_end;
 };
 
 /// Index of a voxel's first fibre entry * 16 + number of entries; 0: no fibres. Throws Error if there are more than 15
@@ -52,12 +50,13 @@ struct VoxelStrips
   int rows = 0;
   std::vector<Strip> strips;  ///< in descending order of cost
   std::vector<StripSlot> slots;
-  std::vector<std::uint32_t> fibre_words;    ///< fibre_word() of each entry; 0: none
-  std::vector<std::uint32_t> device_node;    ///< number of each model node on the device
-  std::vector<std::uint32_t> strip_of_node;  ///< strip that owns each model node
+  std::vector<std::uint32_t> fibre_words;  ///< fibre_word() of each entry; 0: none
+  std::vector<std::uint32_t> device_node;  ///< number of each model node on the device
 
-  /// Fraction of the entries that have a voxel.
+  /// Fraction of the entries that have a voxel, in rows with any.
   double filled() const;
+  /// Fraction of the entries that have fibres, in rows with any; 0 without fibres.
+  double filled_by_fibres() const;
 };
 
 }  // namespace frontalis

@@ -60,7 +60,6 @@ void check_strips(const Model& model, const StripSettings& settings)
           {
             ASSERT_TRUE(row >= 1 && row <= rows);
             const auto n = node_of.at(here.node & StripSlot::node_mask);
-            EXPECT_EQ(strips.strip_of_node[n], s);
             ++owners[n];
           }
           if (here.voxel == 0)
@@ -168,6 +167,16 @@ TEST(VoxelStrips, CarryTheFibresOfTheVoxelsThatHaveThem)
   }
   EXPECT_GT(with, 0u);
   EXPECT_GT(without, 0u);
+}
+
+TEST(VoxelStrips, TellHowManyLanesHaveFibres)
+{
+  test::BlockSettings s;
+  s.voxels = { { 29, 5, 6 } };
+  const Model block = test::block_model(s);
+  EXPECT_EQ(VoxelStrips(block, { 2, 4 }).filled_by_fibres(), 0);
+  // The 14 last voxels of each row have a fibre.
+  EXPECT_DOUBLE_EQ(VoxelStrips(with_fibres(block, 15), { 2, 4 }).filled_by_fibres(), 14.0 / lanes);
 }
 
 // The most expensive strips must start first.
