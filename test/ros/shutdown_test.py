@@ -16,6 +16,7 @@ import roslib.packages
 import rospkg
 import rospy
 import rostest
+from actionlib_msgs.msg import GoalStatus
 from frontalis.msg import FitActivationAction, FitActivationGoal
 from frontalis.srv import LoadScene
 from geometry_msgs.msg import Vector3
@@ -103,8 +104,14 @@ class Shutdown(unittest.TestCase):
         node.face.wait_until_ready()
         client = actionlib.SimpleActionClient("/fitting/fit_activation", FitActivationAction)
         self.assertTrue(client.wait_for_server(rospy.Duration(LIMIT)))
-        client.send_goal(FitActivationGoal(landmark=["tip"], target=[Vector3(0, 0, 1e-3)], runs=1000))
-        wait(node.programs, "the fit")
+
+        def is_fitting():
+            """A fit may end before it is seen; then the next one is begun."""
+            if client.get_state() not in (GoalStatus.PENDING, GoalStatus.ACTIVE):
+                client.send_goal(FitActivationGoal(landmark=["tip"], target=[Vector3(0, 0, 1e-3)], runs=1000))
+            return node.programs()
+
+        wait(is_fitting, "the fit")
         self.end(node, "fits")
 
     def test_while_it_loads_another_scene(self):
