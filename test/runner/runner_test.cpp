@@ -336,7 +336,6 @@ TEST(Runner, EffectsGoOffAndOnAgainWhileItStandsStillAndWhileItRuns)
   EXPECT_LT(tip(still.step(0.05)), 5.9e-3);
   EXPECT_THROW(still.switch_effect(Effect::viscosity, false), Error);
   EXPECT_THROW(still.switch_effect(Effect::elasticity, false), Error);
-
   std::atomic<double> at{ 0 }, time{ 0 };
   Runner running(bar(), settings(Pace::fastest),
                  [&](const Frame& frame)
@@ -347,7 +346,6 @@ TEST(Runner, EffectsGoOffAndOnAgainWhileItStandsStillAndWhileItRuns)
   running.switch_effect(Effect::contraction, false);
   running.set_activation({ { "puller", 0.5 } });
   EXPECT_EQ(names_of(running.effects()), "elasticity, rigid_nodes, output_fields");
-  // if contraction were on, the bar would be short after this time
   EXPECT_TRUE(comes_true([&, begin = time.load()] { return time > begin + 0.05; }));
   EXPECT_NEAR(at, 6e-3, 1e-6);
   running.switch_effect(Effect::contraction, true);

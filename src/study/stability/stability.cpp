@@ -1,6 +1,7 @@
 #include "frontalis/study/stability.hpp"
 
 #include "frontalis/error.hpp"
+#include "frontalis/solver/backend.hpp"
 #include "frontalis/study/step_time.hpp"
 #include "study/stability/stability_cases.hpp"
 
@@ -81,6 +82,11 @@ Trial run_case(const StabilityCase& hard_case, const StabilitySettings& settings
   catch (const Skipped& skipped)
   {
     trial.skipped = skipped.why;
+  }
+  // the backend refuses what the case needs
+  catch (const BackendUnavailable& error)
+  {
+    trial.skipped = error.what();
   }
   catch (const Error& error)
   {
