@@ -55,7 +55,7 @@ void DeviceModel::run_fibres(const Model& model, const Discretisation& discretis
       strip.fibre_begin = Strip::none;
   strips_.upload(strips.data(), strips.size());
 
-  // This is the stiffness in the frequency bound as well.
+  // The palette has the stiffness bounds of voxels, which depend on the running effects.
   std::vector<float4> palette;
   palette_.download(palette);
   for (float4& entry : palette)

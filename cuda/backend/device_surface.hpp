@@ -68,7 +68,7 @@ private:
   };
 
   bool runs_ = true, relieves_ = true;
-  std::vector<double> traction_;  // vertex forces of tractions
+  std::vector<double> traction_;  // forces of tractions on the vertices, three per vertex [N]
   std::vector<std::int32_t> nodes_;
   DeviceArray<std::int32_t> begin_;
   DeviceArray<LoadPart> parts_;
