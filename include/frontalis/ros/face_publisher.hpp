@@ -86,7 +86,8 @@ private:
   /// Shows the bodies and eyeballs of the model in place of those of the model before.
   void publish_bodies();
   using MarkerNames = std::set<std::pair<std::string, std::int32_t>>;  ///< `ns` and `id` of markers
-  /// Publishes these markers, and removes what the topic has shown before and they do not replace.
+  /// Publishes markers, and removes those in `shown` that they do not replace. `shown`: markers that the topic shows;
+  /// updated.
   void publish_latched(visualization_msgs::MarkerArray markers, const ros::Publisher& publisher, MarkerNames& shown);
   std::vector<float> shown_values(const Frame& frame) const;
 
