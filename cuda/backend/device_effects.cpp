@@ -105,7 +105,8 @@ Effects DeviceModel::node_part(const std::vector<NodeTask>& tasks) const
   return part;
 }
 
-// Chooses the kernel that computes the running effects and the fewest others, for the number of rows of the strips.
+// Chooses the kernel that computes the running effects and as few others as possible, for the number of rows of the
+// strips.
 void DeviceModel::choose_effects(EffectSet running)
 {
   Effects least = most_effects_ & Effects::general_element;

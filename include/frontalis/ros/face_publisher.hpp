@@ -43,7 +43,7 @@ public:
   /// Chooses what the colours of the skin show, which field is published, and the value that gets the last colour of
   /// the scale (0: a value for each field that suits faces).
   void set_colour(SkinColour colour, SkinField field, double range);
-  /// The field that frames must have, if there are subscribers who see it.
+  /// The field that frames must have for the present subscribers; empty if none of them sees it.
   std::optional<SkinField> wanted_field() const;
   /// Whether frames must have displacements, for ~muscles.
   bool shows_muscles() const { return muscles_.getNumSubscribers() > 0; }
