@@ -16,7 +16,7 @@ namespace cuda
 /// Contact on the host, which sums reactions and energies from the forces that the device finds.
 using HostContact = BodyContact<double>;
 
-/// A body in the form that the device needs; `field` is its field in device memory.
+/// A body in the form that the device needs. `field`: the body's distance field in device memory.
 inline ContactBody contact_body(const Contact& contact, const physics::DistanceField& field)
 {
   ContactBody body{ field,
@@ -64,7 +64,7 @@ inline ContactPoint contact_point(const Contact& contact, const ContactBody& bod
            0 };
 }
 
-/// The initial copy of a point's samples, which says that none are stored yet.
+/// The initial content of a point's copy of samples (see sample_words). It says that no samples are stored yet.
 inline std::array<float4, sample_words> no_samples()
 {
   std::array<float4, sample_words> words{};

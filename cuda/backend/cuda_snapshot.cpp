@@ -79,7 +79,7 @@ void CudaSolver::restore(const BackendState& from)
   plans_ = state.host.plans;
   still_moved_ = state.host.still_moved;
   copy_state(state, true);
-  // The host reads the frequency bound, so that its copy must be complete.
+  // The host reads the frequency bound, so its copy must be complete.
   synchronise();
 }
 

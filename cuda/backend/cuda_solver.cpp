@@ -100,7 +100,7 @@ void CudaSolver::effects_switched()
   synchronise();
   device_.run(*model_, discretisation_, conditions_.running);
   launch_ = choose_launch(device_);
-  // Plans that still run find their bounds with other effects, so that these bounds are not used.
+  // The frequency bounds of earlier plans belong to the previous set of effects and must not be used.
   plans_ = 0;
 }
 

@@ -57,7 +57,8 @@ private:
   void step(StepArguments& g, int begin, int end);
   void do_steps(const StepPlan& plan, StepArguments& g, int begin, int end);
   void rest();
-  /// `springs`: use the largest stiffness of contact and shells, even while they are switched off.
+  /// Computes the internal forces at displacements `at`. `springs`: contact and shells, even if switched off, are
+  /// springs of their largest stiffness.
   void queue_forces(float4* at, const float* activation, float4* out, bool springs = false);
   void download(const DeviceArray<float4>& field, NodalVectors& out) const;
   /// Copies displacements to the device; an empty `in` stands for zeros.

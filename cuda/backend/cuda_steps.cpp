@@ -51,7 +51,7 @@ void CudaSolver::stage(const StepPlan& plan, const std::vector<float>& relaxatio
   for (const DevicePart* const part : running)
     if (bodies.empty())
       bodies = part->motion(poses);
-  // The offset is a multiple of the size of float4.
+  // Offset of the motion of bodies [bytes]. It is read as float4, which must be aligned to 16 bytes.
   constexpr std::size_t bodies_at = 16;
   const std::size_t activation_at = bodies_at + sizeof(double) * ((bodies.size() + 1) / 2);
   const std::size_t poses_at = activation_at + sizeof(double) * muscles;

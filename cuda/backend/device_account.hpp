@@ -9,7 +9,8 @@ namespace frontalis
 namespace cuda
 {
 
-/// Sums of work in device memory, kept as partial sums. The host adds them up on request.
+/// Work done since the account was opened, for the energy ledger. It is kept as partial sums in device memory, which
+/// the host adds up on request.
 class DeviceAccount
 {
 public:

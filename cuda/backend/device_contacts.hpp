@@ -20,7 +20,7 @@ public:
 
   /// Adds the sliding nodes to the tasks, which are indexed by model node.
   void add_tasks(std::vector<NodeTask>& task_of) const;
-  /// Sets the arguments that steps need.
+  /// Sets the members of `g` that describe sliding nodes.
   void describe(StepArguments& g) const;
   std::size_t rubbing() const { return friction_.size(); }  ///< nodes with friction
   void list_arrays(ArrayList& list) override;

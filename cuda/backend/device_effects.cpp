@@ -55,7 +55,7 @@ void DeviceModel::run_fibres(const Model& model, const Discretisation& discretis
       strip.fibre_begin = Strip::none;
   strips_.upload(strips.data(), strips.size());
 
-  // This is the stiffness in the frequency bound as well.
+  // The palette has the stiffness bounds of voxels, which depend on the running effects.
   std::vector<float4> palette;
   palette_.download(palette);
   for (float4& entry : palette)
@@ -105,7 +105,8 @@ Effects DeviceModel::node_part(const std::vector<NodeTask>& tasks) const
   return part;
 }
 
-// Chooses the kernel that computes the running effects and the fewest others, for the number of rows of the strips.
+// Chooses the kernel that computes the running effects and as few others as possible, for the number of rows of the
+// strips.
 void DeviceModel::choose_effects(EffectSet running)
 {
   Effects least = most_effects_ & Effects::general_element;

@@ -111,7 +111,8 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
   add_added_voxels(model, added);
   add_fibres(model, discretisation);
   std::vector<NodeTask> tasks = add_tasks(model);
-  // Nodes that never move have no inverse mass.
+  // Nodes that never move have the inverse mass 0 in any case. If other nodes are held as well, the frequency bound
+  // needs inverse masses of its own, 0 for all held nodes.
   if (discretisation.held.size() > still_nodes_.size())
   {
     const std::vector<float> of_node = mobility(discretisation);
@@ -254,7 +255,7 @@ std::vector<std::uint32_t> DeviceModel::add_palette(const Model& model, const Di
       latest = entry;
     }
     entry_of[e] = index;
-    // The next voxel with an entry that may be shared must not take this one.
+    // An added voxel does not share its entry, so the next voxel must not take this one.
     index = is_added[e] != 0 ? 0 : index;
   }
   viscosity_.set_palette(entry_of);

@@ -29,7 +29,7 @@ struct CutChoice
   std::size_t patch_bytes = 0;    ///< shared memory available for the patches of a block
   StripSettings strips;
   std::size_t most_strips = 0;  ///< number of strips that the device runs at the same time
-  int most_planes = 0;          ///< strips may get up to this number of planes so that there are not more of them
+  int most_planes = 0;          ///< strips may be lengthened to this number of planes to keep within `most_strips`
 };
 
 /// The patches or strips of a model.
@@ -40,8 +40,8 @@ struct VoxelCut
   std::unique_ptr<VoxelPatches> patches;
   PartRoom part_room;                   ///< shared memory and threads for parts, if the model is cut into patches
   std::unique_ptr<VoxelStrips> strips;  ///< null if the model is cut into patches
-  /// Whether a kernel before each step computes the stress of fibres and of laws other than neo-Hookean; in strips, if
-  /// there are such laws, or fibres that fill few of the lanes
+  /// Whether a kernel before each step computes the stress of fibres and of laws other than neo-Hookean. This is done
+  /// with strips only, if there are such laws or if fibres fill few of the lanes.
   bool stress_apart = false;
 
   std::vector<std::uint32_t>& device_node() { return patches ? patches->device_node : strips->device_node; }

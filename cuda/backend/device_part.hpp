@@ -17,9 +17,9 @@ namespace cuda
 
 struct VoxelCut;
 
-/// The part of the GPU backend that serves an effect with points that are bound to voxels and push them; host backends
-/// have NodePart for this. In strips, kernels find the forces before each step. Patches find them within their steps,
-/// unless the part has kernels for patches as well.
+/// The part of the GPU backend for an effect whose forces act on points that are bound to voxels, such as contact. Host
+/// backends have NodePart for this. With strips, kernels find the forces before each step. With patches, the patch
+/// kernel finds them within its steps, unless has_kernels() is true.
 class DevicePart : public EffectPart
 {
 public:
@@ -28,11 +28,11 @@ public:
   virtual bool idle() const = 0;
   /// Effects that the patch kernel must compute.
   virtual Effects effects() const = 0;
-  /// Sets the arguments that steps need.
+  /// Sets the members of `g` that the part's kernels read.
   virtual void describe(StepArguments& g) const = 0;
 
-  /// Motion of bodies in the steps of a plan, from the bones' poses at the start of each step: ContactArguments::poses,
-  /// followed by ContactArguments::ways. Empty: there are no bodies.
+  /// Returns the motion of bodies in the steps of a plan: the entries of ContactArguments::poses, then those of
+  /// ContactArguments::ways. Empty if there are no bodies. `bones`: poses of the bones at the start of each step.
   virtual std::vector<float> motion(const std::vector<std::vector<RigidTransform>>& /*bones*/) const { return {}; }
 
   /// Whether the functions for strips are used for patches as well. Each step is then a launch of its own.
@@ -54,8 +54,8 @@ public:
                             Vectors& forces, EnergyLedger& ledger) = 0;
 };
 
-/// The parts for the effects that the model has. `device_node`: device node of each model node. (The list in `cut` is
-/// empty at this time.)
+/// The parts for the effects that the model has. `device_node`: device node of each model node; cut.device_node() is
+/// empty when this function is called.
 std::vector<std::unique_ptr<DevicePart>> device_parts(const Model& model, const Discretisation& discretisation,
                                                       const VoxelCut& cut,
                                                       const std::vector<std::uint32_t>& device_node);

@@ -37,8 +37,8 @@ PartRoom room_for_parts(const Model& model, const VoxelPatches& patches, const s
 
 BoundWork bound_work(const Model& model)
 {
-  // Cost of a point relative to a voxel without effects. The value was chosen for the shortest steps of the generated
-  // head.
+  // Cost of a point relative to a voxel without effects. It was chosen to minimise the wall time per step of the
+  // generated head.
   constexpr float touch_cost = 2;
   BoundWork work;
   if (!model.contacts.empty())

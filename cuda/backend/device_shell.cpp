@@ -23,7 +23,7 @@ void sort_and_unite(std::vector<T>& list)
   list.erase(std::unique(list.begin(), list.end()), list.end());
 }
 
-// For each voxel, the triangles around its vertices, ascending.
+// For each voxel, the indices of the triangles with a vertex that is bound to it, ascending.
 std::vector<std::vector<std::uint32_t>> triangles_at(const Model& model, const ShellMesh& mesh)
 {
   std::vector<std::vector<std::uint32_t>> at(model.voxels.size());
@@ -34,8 +34,8 @@ std::vector<std::vector<std::uint32_t>> triangles_at(const Model& model, const S
   return at;
 }
 
-// The given triangles in the order of ShellTriangles. number: for each vertex of the mesh, its index among the vertices
-// whose displacements are computed.
+// The given triangles as words of 16 bytes, laid out as in ShellTriangles. `number`: for each vertex of the mesh, its
+// index among the vertices whose displacements are computed.
 std::vector<float4> words_of(const ShellMesh& mesh, const std::vector<std::uint32_t>& triangles,
                              const std::vector<std::int32_t>& number)
 {
@@ -63,7 +63,8 @@ std::vector<float4> words_of(const ShellMesh& mesh, const std::vector<std::uint3
   return words;
 }
 
-// For each of these vertices, the positions of the x components of the triangles' forces on it.
+// For each vertex whose displacement is computed, the indices of the x components of the triangles' forces on it
+// (shell_words describes the order).
 std::vector<std::vector<std::uint32_t>> terms_of(const ShellMesh& mesh, const std::vector<std::uint32_t>& triangles,
                                                  const std::vector<std::int32_t>& number, std::size_t vertices)
 {
@@ -76,7 +77,7 @@ std::vector<std::vector<std::uint32_t>> terms_of(const ShellMesh& mesh, const st
   return terms;
 }
 
-// Adds values to a table and fills it up to a whole number of words.
+// Appends values to a table of words of 16 bytes, and pads the last word with zeros.
 template <class T>
 void append(std::vector<uint4>& table, const std::vector<T>& values)
 {
@@ -148,7 +149,7 @@ void ShellTables::add(const Model& model, const ShellMesh& mesh, const Around& a
   std::vector<std::uint16_t> all_terms;
   for (std::size_t v = 0; v < vertices.size(); ++v)
   {
-    // The vertices of other voxels have no terms, because some of their triangles are missing here.
+    // Vertices in voxels of other patches get no terms: some of the triangles around them are missing here.
     const std::size_t count = v < own ? terms[v].size() : 0;
     const auto sum = static_cast<std::uint32_t>(all_terms.size() | count << 20);
     const auto& at = binding.coordinates[vertices[v]];

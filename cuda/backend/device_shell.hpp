@@ -9,7 +9,8 @@ namespace frontalis
 namespace cuda
 {
 
-/// For each voxel of the model, the voxels that carry vertices of the triangles around the voxel's own vertices.
+/// For each voxel of the model, the voxels that shell triangles link to it: those that hold any vertex of a triangle
+/// with a vertex in this voxel.
 std::vector<std::vector<std::int32_t>> voxels_beside(const Model& model, const ShellMesh& mesh);
 
 /// The shells of each patch, on the host.

@@ -42,8 +42,8 @@ class DeviceLoads : public EffectPart
 public:
   DeviceLoads(const Model& model, const Discretisation& discretisation, const std::vector<std::uint32_t>& device_node);
 
-  /// Index of the first part of each loaded node, in the order of nodes().
   const std::vector<std::int32_t>& nodes() const { return nodes_; }
+  /// Index of the first part of each loaded node, in the order of nodes(). In device memory.
   const std::int32_t* begin() const { return begin_.data(); }
   const LoadPart* parts() const { return parts_.data(); }
   const double* vertex_force() const { return vertex_force_.data(); }
@@ -68,7 +68,7 @@ private:
   };
 
   bool runs_ = true, relieves_ = true;
-  std::vector<double> traction_;  // vertex forces of tractions
+  std::vector<double> traction_;  // forces of tractions on the vertices, three per vertex [N]
   std::vector<std::int32_t> nodes_;
   DeviceArray<std::int32_t> begin_;
   DeviceArray<LoadPart> parts_;

@@ -9,9 +9,10 @@ namespace frontalis
 namespace cuda
 {
 
-/// Contact of tissue with itself in device memory. Kernels place the vertices before each step, find the forces of the
-/// pairs, and change the velocities of nodes. The search for pairs runs in the same kernels, in two steps, when a
-/// vertex has moved so far that another one could touch a triangle outside of its reach.
+/// Contact of tissue with itself in device memory. Kernels place the vertices before each step, find the forces of
+/// pairs of a vertex and a triangle, and change the velocities of nodes. When vertices have moved so far that one could
+/// touch a triangle with which it forms no pair, the same kernels also search for new pairs, in the course of two
+/// steps.
 class DeviceTissueContact : public DevicePart
 {
 public:

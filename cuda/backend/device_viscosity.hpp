@@ -16,8 +16,8 @@ class DeviceViscosity : public EffectPart
 {
 public:
   /// `voxel_at`: 1 + the index of the model voxel at each place in the device's order of voxels, 0 if the place is
-  /// empty. `apart`: whether a voxel in several patches has stresses of its own in each of them, so that no patch waits
-  /// for another.
+  /// empty. `apart`: whether each patch that has a copy of a voxel has viscous stresses of its own for it, so that no
+  /// patch waits for another.
   DeviceViscosity(const Model& model, const Discretisation& discretisation,
                   const std::vector<std::uint32_t>& device_node, const std::vector<std::uint32_t>& voxel_at,
                   bool apart);
@@ -27,7 +27,7 @@ public:
   void list_arrays(ArrayList& list) override;
   /// While viscosity is switched off, its arrays are neither read nor updated.
   void run(EffectSet running) override;
-  /// Sets the arguments that steps need.
+  /// Sets the members of `g` that describe viscosity.
   void describe(StepArguments& g) const;
   /// Stores the palette entries of voxels. Call it when they are known.
   void set_palette(const std::vector<std::uint32_t>& entry_of_voxel);
@@ -48,8 +48,8 @@ private:
   int terms_ = 0;
   bool runs_ = true;
   std::vector<std::uint32_t> voxel_;  // model voxel of each viscous voxel
-  std::vector<char> counted_;       // whether the entry is the first copy of its model voxel, which the account counts
-  std::vector<ViscousVoxel> host_;  // copies on the host until the palette entries are known
+  std::vector<char> counted_;         // whether the account counts the entry: only one copy of a voxel is counted
+  std::vector<ViscousVoxel> host_;    // copies on the host until the palette entries are known
   DeviceArray<ViscousVoxel> voxels_;
   DeviceArray<std::uint32_t> words_;
   DeviceArray<float4> properties_;

@@ -30,7 +30,7 @@ struct Scene
   bool touches = false;  // whether the motion begins with touching_start()
 };
 
-// Activations that rise linearly to `wanted` within 0.3 s, as in the published set-up.
+// Activations that rise linearly to `wanted` within 0.3 s, as in the published set-up (doc/performance.md).
 Controls ramped(const Controls& wanted, double time)
 {
   Controls now = wanted;

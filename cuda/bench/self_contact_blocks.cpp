@@ -10,7 +10,8 @@ namespace
 constexpr std::int32_t side = 35;
 constexpr double edge = 1e-3, way = -1.03e-3;
 
-// Adds the side of the voxels in layer k: the nodes and the middle of each square.
+// Adds the upper or lower side of layer k of voxels to the contact surface, with vertices at the nodes and in the
+// middle of each square.
 void add_side(const Model& model, SelfContact& contact, std::int32_t k, bool upper)
 {
   TriangleMesh& mesh = contact.surface;

@@ -8,7 +8,7 @@ namespace frontalis
 namespace cuda
 {
 
-/// Adds the contribution of a voxel's corner of weight w to a displacement.
+/// Adds the displacement `u` of a voxel's corner, times its weight w, to `sum`.
 __device__ __forceinline__ void add_part(physics::Vec3<float>& sum, float w, const float4& u)
 {
   sum = sum + w * physics::Vec3<float>{ u.x, u.y, u.z };

@@ -30,8 +30,8 @@ struct BoundPoints
 
 struct StepArguments;
 
-/// Adds `factor` [s] times the accelerations by points.pushes to the velocities `v` of nodes. If `v` is null, adds the
-/// opposite of the forces to the internal forces in g.u[1 - g.first].
+/// Multiplies the accelerations that points.pushes cause by `factor` [s] and adds them to the velocities `v` of nodes.
+/// If v[0] is null, adds the opposite of the forces to the internal forces in g.u[1 - g.first] instead.
 cudaError_t launch_push_nodes(const StepArguments& arguments, const BoundPoints& points, float factor,
                               float* const (&v)[3], cudaStream_t stream);
 

@@ -66,7 +66,8 @@ struct ContactArguments
   std::uint32_t point_count, body_count;
 
   // Motion of the bodies in the steps of a plan:
-  /// [step][body][3], at the start of the step: rows of the inverse rotation minus 1, and of the translation [m]
+  /// [step][body][3], at the start of the step: rows of the inverse rotation minus the identity, and of the translation
+  /// [m]
   const float4* poses;
   const float* ways;  ///< [step]: upper bound of any body's motion relative to the tissue since the plan began [m]
 

@@ -12,8 +12,8 @@ namespace cuda
 // Points of the tissue that may touch bodies. They follow the same rules as the points of BodyContact, in single
 // precision. Positions are relative to rest, so that they are exact to nanometres.
 
-/// Pose of a body at the start of a step. Its inverse rotation is 1 + `less`. In the body's frame, a point at middle +
-/// arm + moved has moved from its rest position by moved + shift + less * (arm + moved).
+/// Pose of a body at the start of a step. Its inverse rotation is the identity + `less`. In the body's frame, a point
+/// at middle + arm + moved has moved from its rest position by moved + shift + less * (arm + moved).
 struct BodyPose
 {
   physics::Vec3<float> less[3];  ///< rows
@@ -52,8 +52,8 @@ static __device__ __noinline__ bool enter_contact_cell(const ContactArguments& c
   return true;
 }
 
-/// Finds the field of its body at a point that has moved by `gone`, in the body's frame. Returns false if no samples
-/// are stored there.
+/// Finds the field of the point's body at the point, which has moved by `gone` in the body's frame. Returns false if no
+/// samples are stored there.
 __device__ __forceinline__ bool distance_at(const ContactArguments& c, std::uint32_t index, const ContactPoint& point,
                                             const ContactBody& body, const physics::Vec3<float>& gone,
                                             physics::FieldValue<float>& value)
@@ -165,7 +165,7 @@ __device__ __forceinline__ Push find_push(const StepArguments& g, const ContactP
     c.clearances[at.index].w = 0;
   else if (!far)
   {
-    // The factor makes up for rounding errors.
+    // The factor 0.999 keeps this a lower bound of the distance despite rounding errors.
     distance = 0.999f * (sampled ? value.value / static_cast<float>(physics::steepest_field)
                                  : static_cast<float>(physics::distance_without_samples(
                                        body.field, double(body.reach),

@@ -127,7 +127,8 @@ struct ElementVoxel : PaletteVoxel<float, With>
   }
 };
 
-/// A voxel at a place. `relaxes`: time by which viscous stresses relax before the forces are computed [s].
+/// The voxel whose data are in a place. `relaxes`: time by which viscous stresses relax before the forces are computed
+/// [s].
 template <Effects With>
 __device__ __forceinline__ ElementVoxel<With> element_voxel(const StepArguments& g, const ElementPlace& place,
                                                             const Activations& activation, float relaxes)

@@ -28,7 +28,7 @@ __global__ void __launch_bounds__(block, 4) run_tasks(const __grid_constant__ St
     fetch_sliding<effects>(g, sliding, fetch);
   const float4 before = u[task.node], now = next[task.node];
   NodeState n{ { now.x, now.y, now.z }, { g.v[0][task.node], g.v[1][task.node], g.v[2][task.node] } };
-  // The inverse mass is taken from the new buffer, because a step may never have written it to the old one.
+  // The inverse mass is taken from the buffer that the step has just written; the other buffer may not hold it.
   const float4 old = make_float4(before.x, before.y, before.z, now.w);
   if (slides)
     slide<effects>(g, sliding, { old, task.node, g.step_begin }, fetch, n);

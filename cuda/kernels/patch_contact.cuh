@@ -19,7 +19,7 @@ struct PatchMemory
   float4* push;         // per point of contact: force on it, and its coordinates
   float4* shell;        // displacements of vertices of shells, and forces of triangles
   uint4* tables;        // see PatchShell
-  // two entries, used in turn (see put_pushes()), because slow threads may still read that of the previous patch
+  // two entries, used in turn (see put_pushes()), because slow threads may still read the entry of the previous patch
   std::uint32_t* least;
 };
 
@@ -53,9 +53,10 @@ __device__ __forceinline__ void split(const uint4& words, std::uint32_t (&out)[8
   }
 }
 
-/// A thread's record of its patch's contact in a step. All points are evaluated at the start of a launch, and again
-/// only when nodes and bodies together have moved as far as the nearest point was then away from its body. The bodies'
-/// motion since the start of the plan plus that of the nodes must not exceed `until`.
+/// What a thread knows about its patch's contact in a step. All points are evaluated at the start of a launch. They are
+/// evaluated again when the motion of the bodies since the start of the plan (ContactArguments::ways) plus that of the
+/// points since the latest evaluation could reach `until`, which is found from the smallest gap at the latest
+/// evaluation.
 struct ContactWatch
 {
   float way;    ///< distance by which nodes may have moved since the evaluation [m]; not positive: evaluate the points
@@ -86,7 +87,7 @@ __device__ __forceinline__ void look_at_watched(const StepArguments& g, const Pa
     const float4 then = i == threadIdx.x ? watch.node : g.contact.watched[contact.node_begin + i];
     const float4 now = memory.place[__float_as_uint(then.w)];
     const float x = now.x - then.x, y = now.y - then.y, z = now.z - then.z;
-    // The negated condition is also true if the motion has diverged.
+    // The negated condition is also true for NaN, after the motion has diverged.
     if (!(x * x + y * y + z * z < watch.way * watch.way))
       watch.moved_on = true;
   }
@@ -162,7 +163,7 @@ __device__ __forceinline__ void end_voxels(const StepArguments& g, const PatchCo
 {
   if (!has<With, Effects::contact>)
     return __syncthreads();
-  // The condition has the same value in all threads.
+  // The condition has the same value in all threads, so that all reach the same barrier.
   if (contact.points == 0 || (g.forces_only && !g.contact.spring))
     return __syncthreads();
   if (watch.way > 0 && __syncthreads_or(watch.moved_on) == 0)

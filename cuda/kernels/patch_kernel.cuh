@@ -183,7 +183,7 @@ __device__ __forceinline__ void step_patch_node(const StepArguments& g, const Pa
     send(next + node, n.u, mark(g, step + 1));
 }
 
-// Set is an int for the reason given in step_kernel.cuh.
+// Set: effects, as an int for the reason given in step_kernel.cu.
 template <int Set>
 __global__ void __launch_bounds__(most_patch_threads, 1)
     patch_kernel(const __grid_constant__ StepArguments g, const __grid_constant__ StepLaunch launch)
@@ -195,7 +195,7 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
   const std::uint32_t threads = blockDim.x;
   if (has<With, Effects::fibres>)
     load_activations(g, activations);
-  float until[most_turns];  // with contact: ContactWatch describes it
+  float until[most_turns];  // per patch of the block: see ContactWatch [m]
   std::uint32_t round = 0;
   std::uint32_t filled = 0, kept = 0;
   for (std::uint32_t p = blockIdx.x; p < g.patch_count; p += gridDim.x)

@@ -20,7 +20,8 @@ struct ShellStep
   std::uint32_t words;      ///< number of words of the table in shared memory
 };
 
-/// `kept`: number of words in shared memory that belong to the block's patches before this one.
+/// The shells of patch p in a step. `kept`: number of words of shared memory that hold tables of the block's earlier
+/// patches.
 __device__ __forceinline__ ShellStep fetch_shell(const StepArguments& g, const StepLaunch& launch,
                                                  const PatchMemory& memory, std::uint32_t p, std::uint32_t kept)
 {
@@ -34,7 +35,8 @@ __device__ __forceinline__ ShellStep fetch_shell(const StepArguments& g, const S
   return shell;
 }
 
-/// Copies the table of a patch to shared memory, at the start of a launch.
+/// Copies the table of patch p to shared memory, at the start of a launch. Returns its number of words. `kept`: see
+/// fetch_shell().
 __device__ __forceinline__ std::uint32_t keep_shell(const StepArguments& g, const StepLaunch& launch,
                                                     const PatchMemory& memory, std::uint32_t p, std::uint32_t kept)
 {

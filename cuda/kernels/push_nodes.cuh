@@ -11,7 +11,7 @@ namespace cuda
 constexpr int push_block = 128;
 constexpr std::uint32_t voxel_corners = 8;
 
-/// What changes by the forces on nodes.
+/// What push_node() changes: velocities or internal forces of nodes.
 struct PushTarget
 {
   float factor;          ///< time by which accelerations are multiplied [s]
@@ -20,9 +20,10 @@ struct PushTarget
   float4* forces;        ///< internal forces, to which the opposite of a node's force is added
 };
 
-/// Body of a kernel that pushes nodes. Each lane adds up the forces of_point(p, b) on corner b by the points p of one
-/// of a node's voxels. The sums of eight lanes are then added in a fixed order. wait() is called when constant data
-/// have been loaded.
+/// Body of a kernel that passes forces on points on to nodes. Eight lanes process a node. Lane b sums of_point(p, b)
+/// over the points p of the voxel whose corner b the node is: the part of each point's force that acts on this corner.
+/// The sums of the eight lanes are then added in a fixed order. Calls wait(), which waits for the preceding kernel,
+/// once constant data have been loaded.
 template <class Wait, class OfPoint>
 __device__ __forceinline__ void push_node(const BoundPoints& points, const PushTarget& to, const Wait& wait,
                                           const OfPoint& of_point)

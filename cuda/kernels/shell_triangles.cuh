@@ -26,7 +26,7 @@ __device__ __forceinline__ void shell_spring_forces(const physics::ShellTriangle
   force[2] = force[2] - on_b;
 }
 
-/// Finds the forces of a triangle. `moved`: displacements of vertices.
+/// Finds the forces of a triangle on its vertices and stores them in `forces`. `moved`: displacements of vertices.
 __device__ __forceinline__ void put_shell_forces(const ShellTriangles& all, std::uint32_t t, const float4* moved,
                                                  float* forces)
 {

@@ -155,8 +155,8 @@ static __device__ __noinline__ void keep_distance(const StepArguments& g, std::i
   slide<With>(g, index, at, fetch, n);
 }
 
-/// Step of a node that slides on a surface that moves with a bone. Only the plane is in single precision, so that
-/// conversions between the frames do not move a node at rest.
+/// Step of a node that slides on a surface that moves with a bone. All but the plane is computed in double precision;
+/// in single precision, the conversions between the frames would move a node at rest.
 template <Effects With>
 __device__ __forceinline__ void glide_here(const StepArguments& g, std::int32_t index, const NodeStep& at, NodeState& n)
 {
@@ -180,7 +180,7 @@ __device__ __forceinline__ void glide_here(const StepArguments& g, std::int32_t 
         { static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z) } };
 }
 
-/// The same as a function for the table in node_tasks.cuh.
+/// glide_here() as a function that is not inlined, for the table in node_tasks.cuh.
 template <Effects With>
 static __device__ __noinline__ void glide(const StepArguments& g, std::int32_t index, const NodeStep& at, NodeState& n)
 {

@@ -155,7 +155,8 @@ struct StepArguments : physics::Kick<float>
   AddedStress* added_stress;
   std::uint32_t added_count;  ///< number of added voxels
   bool selective_reduced;     ///< whether the isochoric stress is taken at eight Gauss points
-  /// 1 + index of the viscous voxel, or 0; in the order of slots or patch_properties; null: none
+  /// 1 + index of the viscous voxel, 0 for other voxels, in the order of slots or patch_properties; null: no viscous
+  /// voxels
   const std::uint32_t* viscous_words;
   /// relaxed stress times tissue volume [N m] as [term][component][viscous voxel]; two terms are followed by their sum
   float* relaxed;

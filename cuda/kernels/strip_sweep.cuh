@@ -232,7 +232,7 @@ __device__ __forceinline__ void sweep_strip(const StepArguments& g, const Strip&
 #pragma unroll
     for (int r = 0; r <= Rows; ++r)
     {
-      // This is requested before it is needed, because a warp would wait for it.
+      // The load is issued before the data are needed, because the warp would otherwise wait for them.
       const AddedStress added = fetch_added<With>(g, here[r].y);
       const RowValues above_b = transform_x(raw_b);
       if (r + 2 < nodes)

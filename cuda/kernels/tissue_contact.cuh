@@ -57,7 +57,7 @@ struct TouchView
 };
 
 /// Places a vertex at the displacements u of device nodes, and clears its forces. Returns how far it has moved since
-/// the latest search [m]. wait() is called when constant data have been loaded.
+/// the latest search [m]. Calls wait(), which waits for the preceding kernel, once constant data have been loaded.
 template <class Wait>
 __device__ __forceinline__ float place_touching(const TissueContactArguments& c, std::uint32_t v, const float4* u,
                                                 const Wait& wait)
@@ -132,7 +132,8 @@ __device__ __forceinline__ void sort_triangle(const TissueContactArguments& c, s
 }
 
 /// The triangle nearest to a vertex among those that it may touch and that do not adjoin the triangle `but`; -1: none.
-/// Of triangles at the same distance the first one counts, so that the order in a bucket does not matter.
+/// Of triangles at the same distance the one with the lowest index is taken, so that the order in a bucket does not
+/// matter.
 __device__ __forceinline__ std::int32_t nearest_triangle(const TouchView& view, std::int32_t p, std::int32_t but)
 {
   const TissueContactArguments& c = view.c;
@@ -160,8 +161,8 @@ __device__ __forceinline__ std::int32_t nearest_triangle(const TouchView& view, 
   return nearest;
 }
 
-/// Forms the pairs of a vertex for the next step: those that touch, and those with the nearest triangles on up to two
-/// surfaces.
+/// Chooses up to two pairs of a vertex for the next step: those that touch, then those with the nearest triangles that
+/// do not adjoin each other.
 static __device__ __noinline__ void search_pairs(const TissueContactArguments& c, std::uint32_t v)
 {
   const TouchView view{ c };
@@ -194,8 +195,8 @@ __device__ __forceinline__ void add_units(unsigned long long* to, long long unit
   atomicAdd(to, static_cast<unsigned long long>(units));
 }
 
-/// Adds the forces of a vertex's pairs to the sums of the vertices. `response`: physics::friction_response(). wait() is
-/// called when the pairs have been loaded.
+/// Adds the forces of a vertex's pairs to the sums of the vertices. `response`: physics::friction_response(). Calls
+/// wait(), which waits for the preceding kernel, once the pairs have been loaded.
 template <bool rubs, class Wait>
 __device__ __forceinline__ void touch_triangles(const TissueContactArguments& c, std::uint32_t v, float response,
                                                 const Wait& wait)

@@ -43,14 +43,14 @@ struct alignas(16) TouchSum
   unsigned long long force[3], turn[3];
 };
 
-/// State of the search. Lengths that kernels compare with atomicMax are stored as bits of floats, which are not
-/// negative.
+/// State of the search. Lengths that kernels maximise with atomicMax are stored as the bits of floats; the bits have
+/// the order of the floats, because lengths are not negative.
 struct TouchControl
 {
   TouchStage stage, next;  ///< of the present and of the next step
   std::uint32_t moved;     ///< largest displacement of a vertex since the latest search [m]
   std::uint32_t radius;    ///< largest distance of a corner from its triangle's centre when triangles were sorted [m]
-  std::uint32_t radius_found;  ///< the same while triangles are sorted
+  std::uint32_t radius_found;  ///< largest such distance so far while triangles are being sorted [m]
   float cell;                  ///< edge of the grid's cells [m]
   float dt;                    ///< length of the latest step [s]
 };
@@ -83,8 +83,8 @@ struct TissueContactArguments
 
   // Values of the present step:
   float4* dual;  ///< two per vertex: physics::SurfaceVertex::dual
-  /// Per vertex, in units of force and in units of force times `edge`. The sums of whole numbers do not depend on the
-  /// order, so that threads may add in any order, and reactions are exact opposites.
+  /// Force and moment per vertex, in units of force and in units of force times `edge`. The sums of whole numbers do
+  /// not depend on the order, so that threads may add in any order, and reactions are exact opposites.
   TouchSum* sums;
   float* stored;  ///< energy stored at each vertex [J]
 };

@@ -33,7 +33,7 @@ __global__ void __launch_bounds__(touch_block)
 {
   let_next_kernel_start();
   const std::uint32_t v = blockIdx.x * touch_block + threadIdx.x;
-  // The control was written before the latest step, which has begun after that.
+  // This may be read before the wait: the kernel that wrote it had ended before the latest step kernel began.
   const TouchStage stage = c.looks_only ? TouchStage::hold : c.control->next;
   float moved = 0;
   if (v < c.vertex_count)
@@ -88,7 +88,8 @@ __global__ void __launch_bounds__(touch_block) touch_springs(const TissueContact
   if (v >= c.vertex_count)
     return;
   const Place moved = bound_displacement(c.bound.coordinates[v], c.bound.nodes[2 * v], c.bound.nodes[2 * v + 1], u);
-  // A vertex has half of the stiffness, because both sides push; the stiffness counts twice, because both sides move.
+  // The factor 4 is 2 x 2: a vertex has only half of the contact's stiffness, because both sides push, and the
+  // stiffness counts twice, because the spring joins two masses that move.
   const float units = -4 * c.per_newton * c.vertices[v].stiffness;
   const auto in_units = [&](float x) { return static_cast<unsigned long long>(__float2ll_rn(units * x)); };
   c.sums[v] = { { in_units(moved.x), in_units(moved.y), in_units(moved.z) }, { 0, 0, 0 } };

@@ -28,7 +28,7 @@ __device__ __forceinline__ physics::Kinematics<float> kinematics_of(const StepAr
 // Effects of voxels that find_added_stress() computes.
 inline constexpr Effects added_effects = Effects::fibres | Effects::general_element;
 
-// Finds the stress of one added voxel per thread. WithBound: also the part of its stiffness bound.
+// Finds the stress of one added voxel per thread. WithBound: also finds what the laws add to its stiffness bound.
 template <bool WithBound>
 __global__ void __launch_bounds__(block) find_added_stress(const __grid_constant__ StepArguments g)
 {

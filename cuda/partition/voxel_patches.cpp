@@ -14,7 +14,7 @@ namespace
 {
 
 // Costs relative to a voxel without effects. They were measured on blocks in which all voxels or none have the effect.
-// The cost of nodes that slide on moving bones was chosen for the shortest steps of the generated head.
+// The cost of nodes that slide on moving bones was chosen to minimise the wall time per step of the generated head.
 constexpr float fibre_cost = 0.4f, viscous_cost = 0.45f, node_cost = 0.8f, glide_cost = 5;
 
 std::int32_t fibres_of(const Model& model, std::size_t e) { return model.fibre_begin[e + 1] - model.fibre_begin[e]; }
@@ -194,7 +194,7 @@ VoxelPatches::VoxelPatches(const Model& model, const PatchSettings& settings, co
   std::vector<std::vector<std::uint32_t>> nodes_of(parts), voxels_of(parts);
   std::vector<char> on_border(model.nodes.size(), 0);
   each_part(model, part_of, [&](std::uint32_t part, std::uint32_t e) { voxels_of[part].push_back(e); });
-  // First model nodes, later device nodes.
+  // The entries are model nodes at first and are replaced by device nodes below.
   std::vector<std::vector<std::uint32_t>> halo_of(parts);
   for (int p = 0; p < parts; ++p)
   {

@@ -16,7 +16,8 @@ struct PatchSettings
   int turns = 1;
 };
 
-/// Requirements of points that are bound to voxels on the partition, for each voxel of the model. Empty: none.
+/// What points that are bound to voxels require of the partition, one entry per voxel of the model. Empty lists:
+/// nothing.
 struct BoundWork
 {
   std::vector<float> cost;  ///< cost of the voxel's points, relative to a voxel without effects

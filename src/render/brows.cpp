@@ -17,8 +17,8 @@ constexpr double half_width = 3.8e-3;     // half the width of the band where it
 constexpr double inner_length = 9.0e-3;   // length of the band beyond the innermost landmark [m]
 constexpr double bare = 12e-3;            // distance from the midline within which the band does not extend [m]
 constexpr double outer_length = 11.0e-3;  // length of the band beyond the outermost landmark [m]
-constexpr double inner_drop = 2e-3;       // height by which that end is lower [m]
-constexpr double outer_drop = 3.5e-3;     // and the outer one [m]
+constexpr double inner_drop = 2e-3;       // height by which the inner end is lower [m]
+constexpr double outer_drop = 3.5e-3;     // height by which the outer end is lower [m]
 constexpr double density = 0.82;          // fraction of the skin that hair covers in the middle of the band
 constexpr double widest = 0.3;            // where the band is widest and densest, as a fraction of its length
 

@@ -31,7 +31,7 @@ RigidTransform look_at(const std::array<double, 3>& position, const std::array<d
   const double length = std::hypot(way[0], way[1], way[2]), level = std::hypot(way[0], way[1]);
   if (!(level > 1e-9 * length) || !std::isfinite(length))
     throw Error("a camera must look at another point than its own place, and not straight up or down");
-  // ahead, and to the right and down while the camera is not rolled
+  // The camera's z axis points ahead. `right` and `down` are its other two axes before it is rolled.
   const std::array<double, 3> z{ way[0] / length, way[1] / length, way[2] / length };
   const std::array<double, 3> right{ way[1] / level, -way[0] / level, 0 };
   const std::array<double, 3> down{ z[1] * right[2] - z[2] * right[1], z[2] * right[0] - z[0] * right[2],

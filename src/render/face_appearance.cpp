@@ -16,10 +16,11 @@ using Point = std::array<float, 3>;
 constexpr Point skin_colour{ { 0.87F, 0.66F, 0.55F } }, lip_colour{ { 0.74F, 0.39F, 0.37F } },
     brow_colour{ { 0.25F, 0.17F, 0.12F } }, hair_colour{ { 0.29F, 0.20F, 0.145F } },
     corner_colour{ { 0.60F, 0.40F, 0.36F } }, white_colour{ { 0.90F, 0.88F, 0.85F } };
-// Lashes cover the edges of the lids, which are parabolas as seen from the front. Lengths over the eyeball's radius.
+// Lashes cover the edges of the lids, which are parabolas as seen from the front. Lengths are divided by the eyeball's
+// radius.
 struct Lashes
 {
-  double height;           // of the middle of the edge over that of the eyeball's
+  double height;           // height of the middle of the lid's edge above the eyeball's centre
   double width, softness;  // of the band along the edge
   double density;
 };
@@ -28,7 +29,7 @@ constexpr double half_fissure = 1.25, lash_reach = 0.22;  // half the length of 
 constexpr double hair_thins_from = 2.5e-3, hair_thins_to = 9e-3;  // [m] from the border of its surface
 constexpr double lip_border = 1.5e-3;                             // [m] over which skin turns into lip
 constexpr double farthest = 40e-3;  // [m] from a part's landmarks; skin farther away belongs to no part
-constexpr float hairy = 0.3F;       // what hair covers by more than this is labelled as brow
+constexpr float hairy = 0.3F;       // skin of which hair covers a larger fraction than this has the label of the brow
 
 // Parts of the skin: a vertex belongs to the part that has the closest landmark. Lips and brows are painted.
 struct Part
@@ -102,7 +103,7 @@ BodyAppearance body_appearance(const std::string& name, bool only_shown, const T
   look.colours.assign(surface.vertices.size(), look.colour);
   if (!is_hair)
     return look;
-  // an edge of one triangle alone is at the border
+  // An edge that belongs to only one triangle is on the border.
   std::set<std::array<std::int32_t, 2>> open;
   for (const auto& t : surface.triangles)
     for (std::size_t c = 0; c < 3; ++c)
@@ -136,7 +137,7 @@ SkinAppearance skin_appearance(const std::vector<std::string>& landmarks, const 
                              std::vector<std::uint8_t>(vertices.size(), skin_label), std::nullopt };
   if (has_mouth)
   {
-    // large enough to be all that is seen through a mouth that is wide open, and behind its front teeth
+    // The ball fills the view into a wide open mouth, and lies behind the front teeth.
     const double height = double((*corner)[2]) - (*chin)[2], radius = 1.55 * height;
     appearance.mouth = RenderBall{
       { double((*corner)[0]) - radius - height / 2, 0, (*corner)[2] - height / 5 }, radius, inside_colour, inside_label
@@ -156,7 +157,7 @@ SkinAppearance skin_appearance(const std::vector<std::string>& landmarks, const 
         closest = away;
         appearance.labels[v] = part[l];
       }
-    // lips are arcs from corner to corner, as high as the landmarks in their middle are
+    // The border of each lip is an arc from corner to corner, as high as the landmark in the middle of the lip.
     if (has_mouth && p[0] > (*corner)[0] - 2e-3 && std::abs(p[1]) < (*corner)[1])
     {
       const double bow = 1 - std::pow(p[1] / (*corner)[1], 2), from_corner = double(p[2]) - (*corner)[2];
@@ -187,9 +188,9 @@ SkinAppearance skin_appearance(const std::vector<std::string>& landmarks, const 
 namespace
 {
 
-/// An iris of 11.7 mm with a pupil of 4.2 mm, on a ball of 24.2 mm: rings of points about the axis x through the middle
-/// of the ball, over whose radius all lengths are. The cap is flatter than a cornea, whose radius is 7.8 mm: tissue
-/// slides on the white ball, and a cornea would show through closed lids.
+/// An iris of 11.7 mm with a pupil of 4.2 mm, on a ball of 24.2 mm: rings of points about the x axis through the middle
+/// of the ball. All lengths are divided by the ball's radius. The cap is flatter than a cornea, whose radius is 7.8 mm:
+/// tissue slides on the white ball, and a cornea would show through closed lids.
 RenderMesh iris_cap()
 {
   struct Ring
@@ -263,7 +264,7 @@ std::vector<Eyeball> eyeballs(const Model& model, const std::function<RigidTrans
   return out;
 }
 
-// behind the eyeball, and towards the midline, where lids leave a gap at the inner corner
+// The socket is behind the eyeball and nearer to the midline, where lids leave a gap at the inner corner.
 RenderBall socket_of(const RenderBall& eyeball)
 {
   const auto& [x, y, z] = eyeball.centre;

@@ -18,7 +18,7 @@ namespace
 
 using Vector = std::array<double, 3>;
 
-constexpr double hidden_by = 2e-3;      // [m] what is in front of a landmark by more than this hides it
+constexpr double hidden_by = 2e-3;      // [m] a surface hides a landmark if it is in front of it by more than this
 constexpr double shadow_offset = 5e-4;  // [m] above the surface, so that triangles do not shade their neighbours
 
 double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
@@ -138,7 +138,7 @@ void Renderer::Implementation::attach(RTCGeometryType type, RTCFormat format, co
                                       std::size_t count, const RenderMesh* mesh)
 {
   RTCGeometry geometry = rtcNewGeometry(device(), type);
-  // an empty mesh keeps its number
+  // An empty mesh is attached too, so that the number of a geometry is the index of its mesh.
   if (count > 0)
     std::memcpy(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, format, stride, count), vertices,
                 stride * count);
@@ -200,7 +200,7 @@ Hit Renderer::Implementation::meets_ball(const Vector& direction, const RenderBa
   const double root = b * b - a * (dot(ball.centre, ball.centre) - ball.radius * ball.radius);
   Hit hit;
   hit.depth = root > 0 ? (b - std::sqrt(root)) / a : guess;
-  // a camera inside of the ball
+  // The camera is inside the ball.
   if (hit.depth < 0)
     hit.depth = guess;
   hit.point = along({}, hit.depth, direction);
@@ -227,7 +227,7 @@ std::optional<Hit> Renderer::Implementation::trace(double u, double v) const
              : meets_ball(direction, scene.balls[found.hit.primID], found.ray.tfar);
 }
 
-// `key`: unit vector towards the main light, in the frame of the camera, as are those below
+// `key`: unit vector towards the main light. All vectors are in the frame of the camera.
 Vector Renderer::Implementation::shaded(const Hit& hit, const Light& light, const Vector& key) const
 {
   if (hit.label == inside_label)

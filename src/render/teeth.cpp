@@ -12,8 +12,9 @@ namespace
 
 constexpr std::array<float, 3> gum_colour{ { 0.78F, 0.47F, 0.45F } };
 
-// Rows of teeth, from the midline: the borders between teeth along the row, and the height of the cutting edges and of
-// the gums' rim above the corners of the mouth (estimates from textbooks' dimensions of teeth) [m].
+// A row of teeth, from the midline to one side: positions of the borders between teeth along the row, and heights of
+// the cutting edges and of the gums' rim above the corners of the mouth [m]. They are estimates from the dimensions of
+// teeth in textbooks.
 struct Row
 {
   std::array<double, 8> borders;
@@ -22,11 +23,11 @@ struct Row
 constexpr Row upper_row{ { 0, 8.6e-3, 15.2e-3, 23e-3, 30e-3, 36.8e-3, 47e-3, 57e-3 }, -1e-3, 9.3e-3 };
 constexpr Row lower_row{ { 0, 5.4e-3, 11.3e-3, 18.2e-3, 25.2e-3, 32.3e-3, 43.3e-3, 54e-3 }, -2.7e-3, -11.7e-3 };
 constexpr double papilla = 1.8e-3;  // [m] by which the gums reach farther between two teeth
-constexpr double groove = 0.6e-3;   // [m] beside the border of two teeth in which it gets darker
-constexpr float shade = 0.6F;       // of the border itself
-constexpr double arch_depth = 0.7;  // of the arch over half of its width
+constexpr double groove = 0.6e-3;   // [m] beside the border of two teeth within which a tooth gets darker
+constexpr float shade = 0.6F;       // brightness of the border itself
+constexpr double arch_depth = 0.7;  // depth of the arch divided by half of its width
 
-// Halves all edges of a mesh, so that colours of vertices can show what is smaller than its triangles.
+// Splits each edge of a mesh in two, so that colours of vertices can show details that are smaller than its triangles.
 void halve(RenderMesh& mesh)
 {
   std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> known;
@@ -72,7 +73,7 @@ RenderMesh painted_teeth(const TriangleMesh& surface, bool lower, double corner_
   mesh.labels.reserve(mesh.vertices.size());
   for (const auto& p : mesh.vertices)
   {
-    // length along an elliptic arch from its front, whose line element is about its mean over the angle
+    // Arc length from the front of an elliptic arch, to first order in the difference of its semi-axes.
     const double angle = std::atan2(std::abs(p[1]) / half_width, (p[0] - front + depth) / depth);
     const double along = (half_width + depth) / 2 * angle + (half_width - depth) / 4 * std::sin(2 * angle);
     const auto next = std::upper_bound(row.borders.begin() + 1, row.borders.end() - 1, along);
@@ -84,7 +85,7 @@ RenderMesh painted_teeth(const TriangleMesh& surface, bool lower, double corner_
     std::array<float, 3> colour = is_gum ? gum_colour : teeth_colour;
     for (float& c : colour)
       c *= static_cast<float>(light);
-    // the body goes on beyond the teeth, where there is nothing to be seen
+    // The part of the body beyond the teeth is drawn dark.
     const bool is_beyond = height < up * row.edge + 0.6e-3 * std::pow(aside, 4);
     mesh.colours.push_back(is_beyond ? inside_colour : colour);
     mesh.labels.push_back(is_beyond ? inside_label : body_label);

@@ -33,7 +33,7 @@ RigidTransform BoneFollower::wanted(const BoneFrame& bone) const
   const auto place = [&](const std::string& frame)
   { return buffer_->lookupTransform(face_frame_, frame, ros::Time(0)); };
   const auto now = place(bone.frame);
-  // a static transform has the stamp 0
+  // A static transform has the stamp 0 and is never too old.
   const double age = now.header.stamp.isZero() ? 0.0 : (ros::Time::now() - now.header.stamp).toSec();
   if (std::abs(age) > patience_)
     throw Error(fmt::format("the latest transform of '{}' is {:.3g} s {}; allowed are {:.3g} s", bone.frame,

@@ -223,7 +223,8 @@ void FaceNode::log_speed_once()
     ROS_INFO_STREAM(name_ << ": " << speed_report_);
 }
 
-// What the face shows, and that it does so in slow motion; before there is a face, what is done to make it.
+// The caption names the expression, and says so if the face moves in slow motion. Before there is a face, it says what
+// is being done to make it.
 void FaceNode::show_caption()
 {
   std::string text = inputs_.shown_expression(time_);
@@ -236,7 +237,7 @@ void FaceNode::show_caption()
       factor >= sufficient_real_time_factor)
     slowness_ = 0;
   else if (std::abs(1 / factor - slowness_) > 0.2 * slowness_)
-    slowness_ = 1 / factor;  // a figure that changed with each frame could not be read
+    slowness_ = 1 / factor;  // small changes are left out, because a figure that always changes cannot be read
   if (slowness_ > 0)
     text += fmt::format("{}slow motion, 1 : {:.2g}", text.empty() ? "" : "\n", slowness_);
   if (text == caption_ || (!runner_ && loading_frame_.empty()))
@@ -252,17 +253,17 @@ void FaceNode::repeat_frame_and_play()
   {
     const std::scoped_lock lock(runner_mutex_, frame_mutex_);
     running = runner_;
-    // in lock-step, ~step plays the demo and the commands instead
+    // In lock-step, not this timer but ~step sets the activations of the demo and of the commands.
     steps_by_itself = parameters_.runner.pace != Pace::lock_step;
-    // a replay in simulated time must give each frame once
+    // In a lock-step replay in simulated time, each frame must be published only once.
     const bool once = ros::Time::isSimTime() && !steps_by_itself;
     if (!once && (ros::WallTime::now() - last_published_).toSec() > repetition_period)
     {
       last_published_ = ros::WallTime::now();
-      // resend the frame of a face that stands still, for late subscribers
+      // A face that stands still publishes its frame again, for late subscribers.
       if (runner_ && has_frame_ && frame_finite_)
         publisher_.publish(frame_, ros::Time::now(), paused_);
-      // a face whose model could not be made has failed; one that is still being baked has not
+      // This reports a model that could not be made, not one that is still being made.
       if (!load_fault_.empty())
         publisher_.publish_fault(load_fault_, ros::Time::now());
     }

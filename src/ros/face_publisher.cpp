@@ -23,7 +23,7 @@ constexpr double stress_range = 20e3;  // [Pa]
 constexpr double line_range = 0.2e-3;  // [m]
 constexpr double activation_range = 1;
 
-const ros::WallDuration bodies_again(1);  // after the first frame
+const ros::WallDuration bodies_again(1);  // time after the first frame until the bodies are published again [s]
 
 }  // namespace
 
@@ -237,7 +237,8 @@ bool FacePublisher::publish(const Frame& frame, const ros::Time& stamp, bool pau
     publish_wrench(first_bone + b, frame.bones[b]);
   to_transforms(*model_, frame, poses, face_frame_, stamp, frame_transforms_);
   transforms_.sendTransform(frame_transforms_);
-  // rviz can lose markers that come together with the first transforms of their frames
+  // rviz can lose markers that come together with the first transforms of their frames. The bodies are therefore
+  // published once more.
   const ros::WallTime now = ros::WallTime::now();
   if (bodies_due_ && bodies_due_->isZero())
     bodies_due_ = now + bodies_again;
@@ -275,7 +276,7 @@ void FacePublisher::probe(const SkinState& skin, const geometry_msgs::Point& poi
 
 void FacePublisher::publish_caption(const std::string& text, const std::string& frame)
 {
-  // where the head's face begins and ends, for the time before there is a model [m]
+  // Lowest and highest z of the face in its frame [m]. These values serve until there is a model.
   float lower = -0.1f, upper = 0;
   if (!rest_.empty())
   {

@@ -72,14 +72,13 @@ bool FaceNode::on_step(Step::Request& request, Step::Response& response)
         Frame frame;
         frame.time = time_;
         double left = request.seconds;
-        paused_ = true;  // frames of this step must say so already
+        paused_ = true;  // set before the step, because its frames report it
         do
         {
           const double seconds = inputs_.timed(frame.time) && left > piece ? piece : left;
           inputs_.play(running, frame.time + seconds);
           left -= seconds;
-          // The clock may stand still during a step, so that frames of its pieces could not be told apart by their
-          // stamps.
+          // The clock may stand still during a step. Frames of its pieces would then have the same stamp.
           frame = running.step(seconds, left <= 0);
         } while (left > 0 && !frame.failed && !stopping_);
         paused_ = running.paused();

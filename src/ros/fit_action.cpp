@@ -110,7 +110,7 @@ FitAction::~FitAction()
 
 void FitAction::execute(const FitActivationGoalConstPtr& goal)
 {
-  // the order matters: a goal may have been cancelled before it began, or may be at this moment
+  // This is cleared before the check, so that a goal that is cancelled at this moment stays cancelled.
   cancelled_ = false;
   if (stopping_ || server_.isPreemptRequested())
     cancelled_ = true;

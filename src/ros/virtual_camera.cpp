@@ -23,8 +23,8 @@ namespace
 {
 
 constexpr double degree = 3.14159265358979323846 / 180;
-constexpr double patience = 0.3;  // wall seconds to wait for a transform of the frame's moment
-constexpr double silence = 30;    // wall seconds between two warnings that the face sends nothing
+constexpr double patience = 0.3;  // longest time to wait for a transform at the stamp of a frame [s of wall time]
+constexpr double silence = 30;    // time between two warnings that the face sends nothing [s of wall time]
 constexpr float unknown = std::numeric_limits<float>::quiet_NaN();
 
 std::array<double, 3> read_vector(ParameterReader& reader, const std::string& key, const std::vector<double>& fallback)
@@ -181,7 +181,7 @@ void VirtualCamera::report_silence()
 bool VirtualCamera::is_wanted() const
 {
   const ros::Time stamp = inputs_.skin->header.stamp;
-  // stamps that go back are those of a clock that started again
+  // A stamp before the latest one means that the clock has been started again.
   if (stamp == pictured_ || (stamp > pictured_ && rate_ > 0 && (stamp - pictured_).toSec() < (1 - 1e-3) / rate_))
     return false;
   return has_listeners();
@@ -203,8 +203,8 @@ SkinState VirtualCamera::skin() const
   return out;
 }
 
-// Colours and labels follow from the places of landmarks at rest. Those are not published: they are taken to be where
-// the vertices rest that are closest to the landmarks now.
+// Colours and labels follow from the places of landmarks at rest, which are not published. Each place is taken to be
+// that of the vertex, at rest, that is closest to the landmark in this frame.
 void VirtualCamera::find_appearance(const SkinState& skin, const std::vector<RenderBall>& eyes)
 {
   std::vector<std::array<float, 3>> rest;
@@ -254,7 +254,7 @@ void VirtualCamera::add_eyes(const std::string& face_frame, const ros::Time& sta
 {
   for (const visualization_msgs::Marker& marker : inputs_.eyes->markers)
   {
-    // others remove the eyes of an earlier scene
+    // Markers with another action remove the eyes of an earlier scene.
     if (marker.action != visualization_msgs::Marker::ADD)
       continue;
     const RigidTransform pose = transform(face_frame, marker.header.frame_id, stamp);
@@ -280,12 +280,12 @@ void VirtualCamera::add_bodies(const std::string& face_frame, const ros::Time& s
   for (std::size_t at = 0; at < markers.size(); ++at)
   {
     const visualization_msgs::Marker& marker = markers[at];
-    // others remove the bodies of an earlier scene
+    // Markers with another action remove the bodies of an earlier scene.
     if (marker.action != visualization_msgs::Marker::ADD)
       continue;
     const RigidTransform pose = transform(face_frame, marker.header.frame_id, stamp);
     const RenderMesh& mesh = scene.meshes.emplace_back(moved(body_meshes_[at], pose));
-    // an eyeball that lids touch is drawn as a ball
+    // An eyeball that lids touch is also a body. Only its ball is drawn.
     const auto is_eyeball = [&mesh](const RenderBall& ball)
     {
       const auto is_within = [&ball](const std::array<float, 3>& v)

@@ -50,8 +50,8 @@ void Runner::Implementation::fail(const std::string& reason)
   frame.failure = reason;
 }
 
-// Advances the face by `seconds` of scaled simulated time, that of time(). If the motion fails, the face stops until it
-// is reset.
+// Advances the face by `seconds` of the time that time() returns. If the motion fails, the face stops until it is
+// reset.
 void Runner::Implementation::advance(double seconds, const Controls& controls)
 {
   try

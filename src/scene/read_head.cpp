@@ -348,7 +348,7 @@ HeadTemplate::Joint read_joint(const Node& node)
   Mapping fields(node);
   joint.at = read_place(fields.required("at", "a position"));
   joint.axis = fields.required("axis", "a direction").direction(joint.axis);
-  // The file has lengths per degree.
+  // Lengths are per degree in the file and per radian in `joint`.
   joint.slide = fields.optional("slide").vector(Dimension::length, any_number, joint.slide);
   for (double& x : joint.slide)
     x *= 180 / 3.14159265358979323846;

@@ -14,8 +14,8 @@ namespace frontalis
 
 constexpr std::array<float, 3> teeth_colour{ { 0.93F, 0.91F, 0.84F } };
 
-/// Colours of a body's vertices, and its label: of one that tissue touches those of teeth, of one that is only shown
-/// those of skin, or of hair if it is named so. Hair gets thinner towards the open border of its surface.
+/// Colours of a body's vertices, and its label. A body that tissue touches looks like teeth. A body that is only shown
+/// looks like skin, or like hair if its name is "hair". Hair gets thinner towards the open border of its surface.
 struct BodyAppearance
 {
   std::uint8_t label = 0;
@@ -40,17 +40,18 @@ SkinAppearance skin_appearance(const std::vector<std::string>& landmarks,
                                const std::vector<std::array<float, 3>>& vertices,
                                const std::vector<RenderBall>& eyes = {});
 
-/// The fraction of each skin vertex that the hair of a painted eyebrow covers, 0..1; `vertices` and `places` of the
-/// landmarks at rest. The brow of a side is a band with soft borders along the line through the landmarks whose names
-/// begin with "brow" and end with "_left" or "_right". It is about 1 cm longer at both ends, which are lower and where
-/// hair gets thinner, but ends 12 mm from the midline. A side with fewer than two such landmarks has no brow. Brows
-/// show in pictures how the skin moves; they do not act on the tissue.
+/// The fraction of each skin vertex that the hair of a painted eyebrow covers, 0..1. `vertices`, and `places` of the
+/// landmarks, are at rest [m]. The brow of a side is a band with soft borders along the line through the landmarks
+/// whose names begin with "brow" and end with "_left" or "_right". The band extends about 1 cm beyond the line at both
+/// ends, where it is lower and its hair thinner, but it ends 12 mm from the midline. A side with fewer than two such
+/// landmarks has no brow. Brows show in pictures how the skin moves; they do not act on the tissue.
 std::vector<float> brow_cover(const std::vector<std::string>& landmarks,
                               const std::vector<std::array<float, 3>>& places,
                               const std::vector<std::array<float, 3>>& vertices);
 
-/// The eyeballs, which are balls that tissue slides on, of bones whose names begin with "eye", in the face frame: a
-/// white ball, and the iris with its pupil, a cap on the ball. `motion`: that of a bone, in the face frame.
+/// An eyeball in the face frame: a white ball, and a cap on it with the iris and its pupil. eyeballs() returns one for
+/// each ball on which tissue slides and whose bone has a name that begins with "eye". `motion`: motion of a bone in the
+/// face frame.
 struct Eyeball
 {
   std::size_t bone = 0;
@@ -65,20 +66,20 @@ std::vector<RenderBall> resting_eyes(const Model& model);
 /// A dark ball behind an eyeball, which is seen where the lids leave a gap beside it.
 RenderBall socket_of(const RenderBall& eyeball);
 
-/// A body on which lips rest, drawn as a row of teeth with their gums: painted for teeth of common sizes in the middle
-/// of the body, dark beyond their edges. `surface` at rest, face frame, symmetric about y = 0; `corner_height`: z of
-/// the corners of the mouth at rest [m].
+/// A body on which lips rest, drawn as a row of teeth with their gums. Teeth of common sizes are painted on the middle
+/// of the body, which is dark beyond their edges. `surface`: at rest, in the face frame, symmetric about y = 0.
+/// `corner_height`: z of the corners of the mouth at rest [m].
 RenderMesh painted_teeth(const TriangleMesh& surface, bool lower, double corner_height);
 
 /// One of the model's body_shapes() at rest, in the face frame: painted as teeth if its name begins with "teeth" and
 /// the model has the landmark mouth_corner_left, else with its body_appearance().
 RenderMesh body_at_rest(const Model& model, const BodyShape& body);
 
-/// Shows a model: its skin, its eyeballs and its bodies. In the face frame.
+/// Shows a model in the face frame: its skin, its eyeballs and its bodies.
 class FaceAppearance
 {
 public:
-  /// `rest`: the skin at rest, in the face frame, as all skins. The model must outlive this.
+  /// `rest`: the skin at rest. All skins are in the face frame. The model must outlive this object.
   FaceAppearance(const Model& model, const SkinState& rest);
   RenderScene scene(const SkinState& skin, const Controls& controls) const;
 

@@ -85,7 +85,7 @@ struct Light
   std::array<float, 3> background{ { 1, 1, 1 } };
 };
 
-/// Row by row from the top.
+/// Images of a scene. Pixels are stored row by row from the top.
 struct Images
 {
   std::vector<std::array<std::uint8_t, 3>> colour;

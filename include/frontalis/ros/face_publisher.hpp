@@ -43,7 +43,7 @@ public:
   /// Chooses what the colours of the skin show, which field is published, and the value that gets the last colour of
   /// the scale (0: a value for each field that suits faces).
   void set_colour(SkinColour colour, SkinField field, double range);
-  /// The field that frames must have, if there are subscribers who see it.
+  /// The field that frames must have for the present subscribers; empty if none of them sees it.
   std::optional<SkinField> wanted_field() const;
   /// Whether frames must have displacements, for ~muscles.
   bool shows_muscles() const { return muscles_.getNumSubscribers() > 0; }
@@ -86,7 +86,8 @@ private:
   /// Shows the bodies and eyeballs of the model in place of those of the model before.
   void publish_bodies();
   using MarkerNames = std::set<std::pair<std::string, std::int32_t>>;  ///< `ns` and `id` of markers
-  /// Publishes these markers, and removes what the topic has shown before and they do not replace.
+  /// Publishes markers, and removes those in `shown` that they do not replace. `shown`: markers that the topic shows;
+  /// updated.
   void publish_latched(visualization_msgs::MarkerArray markers, const ros::Publisher& publisher, MarkerNames& shown);
   std::vector<float> shown_values(const Frame& frame) const;
 

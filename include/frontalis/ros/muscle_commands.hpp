@@ -23,7 +23,7 @@ public:
   /// An activation over time: linear between knots, constant before the first and after the last. Times do not descend.
   using Course = std::vector<Knot>;
 
-  /// All muscles have the activation of their tone.
+  /// At first all muscles have the activation of their tone.
   explicit MuscleCommands(std::shared_ptr<const Model> model);
 
   /// Sets activations, 0..1, of the named muscles at once; other muscles keep their courses. Throws an Error that names

@@ -28,8 +28,8 @@ public:
   void colours(const SkinState& skin, const std::vector<float>& values, std::vector<std::array<float, 3>>& out) const;
 
 private:
-  /// Mean normal curvature of each vertex [1/m], positive in hollows: the mean over neighbours of twice the height
-  /// above the tangent plane over the squared distance.
+  /// Mean normal curvature of each vertex [1/m], positive in hollows. It is the mean over the neighbours of twice a
+  /// neighbour's height above the vertex's tangent plane, divided by its squared distance.
   std::vector<float> curvatures(const SkinState& skin) const;
 
   std::vector<std::int32_t> neighbour_begin_;

@@ -70,11 +70,11 @@ private:
   Inputs inputs_;
   bool was_complete_ = false;  ///< whether the inputs were complete since the latest report_silence()
   ros::Time pictured_;
-  /// what appearance_ and triangles_ are of
+  /// the messages from which appearance_ and triangles_ were made
   std::pair<shape_msgs::Mesh::ConstPtr, visualization_msgs::MarkerArray::ConstPtr> appearance_of_;
   SkinAppearance appearance_;
   std::vector<std::array<std::int32_t, 3>> triangles_;
-  visualization_msgs::MarkerArray::ConstPtr body_meshes_of_;  ///< the message that body_meshes_ are of
+  visualization_msgs::MarkerArray::ConstPtr body_meshes_of_;  ///< the message from which body_meshes_ were made
   std::vector<RenderMesh> body_meshes_;                       ///< per marker
 
   /// Stamp of the first transform from a frame to another one that was waited for in vain; 0 after a success.

@@ -107,7 +107,7 @@ ControlNet MuscleSheet::net(const std::function<std::array<Vector3d, 2>(double u
 
 ControlNet curved_muscle_net(const Shape& shape)
 {
-  // So many control points keep the thickness within a few per cent, because a spline smooths between them.
+  // With fewer control points, the spline would smooth away more than a few per cent of the thickness.
   constexpr int least_along = 12, least_across = 13;
   const MuscleSheet sheet(shape.curves, shape.ring);
   return sheet.net(

@@ -19,14 +19,15 @@ public:
   MuscleSheet(std::vector<std::vector<Vector3>> curves, bool ring) : curves_(std::move(curves)), ring_(ring) {}
 
   Vector3d at(double u, double s) const;
-  /// Interpolates values that belong to the curves, of which there is one per curve.
+  /// Interpolates `values`, one per curve, at the position (u, s).
   double between(const std::vector<double>& values, double u, double s) const;
   /// Position between the curves, from 0 to the number of curves - 1.
   double position(double u, double s) const;
   /// Thickness divided by the mean thickness in the middle: edges and ends are thin.
   double relative_thickness(double u, double s) const;
-  /// The control net whose points on both sides of the middle surface are `sides(u, s)`, at most 5 mm apart along the
-  /// surface, and at least as many along and across the fibres as given.
+  /// The control net whose points are `sides(u, s)`, one on each side of the middle surface. They are at most 5 mm
+  /// apart along the surface, and there are at least `least_along` of them along the fibres and `least_across` across
+  /// them.
   ControlNet net(const std::function<std::array<Vector3d, 2>(double u, double s)>& sides, int least_along,
                  int least_across) const;
 

@@ -24,7 +24,7 @@ TriangleMesh make_offset(const Shape& shape, const TriangleMesh& above)
     depths.push_back(site.depth);
   }
   const RadialField table(places, depths, RadialField::Polynomial::constant, 0);
-  // Between and beyond its places the table is not exceeded.
+  // Interpolated depths stay between the smallest and the largest depth of the table.
   const auto [least, most] = std::minmax_element(depths.begin(), depths.end());
   const auto depth_at = [&](const Vector3d& p) { return std::min(*most, std::max(*least, table(p))); };
   const auto f = [&](const Vector3d& p)

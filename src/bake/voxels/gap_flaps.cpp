@@ -156,7 +156,7 @@ void Gaps::assign_flaps(Voxels& voxels) const
       ++f;
     if (f < 4)
       continue;
-    // The joined voxels extend around the end of a gap and meet themselves, so that each voxel gets a flap of its own.
+    // These joined voxels surround the end of a gap and do not fit into one flap. A flap is chosen for each separately.
     for (const std::uint32_t voxel : list)
     {
       for (f = 0; f < most_flaps && !put({ voxel }, f); ++f)

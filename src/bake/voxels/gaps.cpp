@@ -142,7 +142,8 @@ void Gaps::find_parts(Tissue& tissue) const
       if ((tissue.points[i] - tissue.points[j]).squaredNorm() < near * near && sets.find_set(i) != sets.find_set(j) &&
           !walls_->part(tissue.points[i], tissue.enclosing[i], tissue.points[j], tissue.pieces))
         sets.union_set(i, j);
-  // The parts are sorted by the number of the scene's samples in them, the largest number first.
+  // The parts are sorted by the number of samples in them, the largest number first. Points after the first `all` are
+  // not samples.
   const int all = samples_ * samples_ * samples_;
   std::map<std::size_t, int> samples_in;
   for (std::size_t i = 0; i < count; ++i)

@@ -13,7 +13,8 @@ namespace frontalis
 /// the tissue are joined if the line between them does not leave the tissue and no slit cuts it. Points that are joined
 /// form a part; parts of neighbouring voxels are joined by the same rule. A voxel with several parts is replaced by one
 /// voxel per part, with its own filling. Around a point of the grid, voxels that are joined form a group, and each
-/// group gets a node of its own: voxels of different groups are put in different flaps (Model::flaps).
+/// group gets a node of its own: voxels of different groups are put in different flaps (Model::Flap), which are sets of
+/// voxels with nodes of their own.
 class Gaps
 {
 public:

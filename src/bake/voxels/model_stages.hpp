@@ -53,8 +53,8 @@ struct LocalFrame
   {
     return to_scene(to_vector(model.spacing).cwiseProduct(Vector3d(i, j, k)));
   }
-  /// Index of the voxel to whose tissue a point near a gap belongs; -1 for a point that is not near a gap. Local
-  /// coordinates.
+  /// Index of the voxel to whose tissue a point near a gap belongs; -1 for a point that is not near a gap. `local`: the
+  /// point in local coordinates [m].
   std::int32_t owner(const Model& model, const VoxelIndex& index, const Vector3d& local) const;
   Vector3d voxel_centre(const Model& model, std::size_t e) const
   {
@@ -66,7 +66,8 @@ struct LocalFrame
 // The stages of the bake that fill the model, in the order of the calls.
 
 /// Chooses as local x the axis along which rows of voxels are longest, sorts the voxels, and fills the model's grid,
-/// nodes, flaps with their joints, mixtures and muscle weights. add_fibres() fills the fibre directions.
+/// nodes, flaps (Model::Flap) and the joints of their nodes, mixtures and muscle weights. add_fibres() fills the fibre
+/// directions.
 LocalFrame assemble_voxels(const Grid& grid, const Voxels& voxels, Model& model);
 
 /// Copies frames, gravity, materials, muscles, accuracy and presets from the scene into the model.

@@ -200,7 +200,7 @@ public:
     ClosestPoint sheet = whole;
     if (whole.triangle >= 0)
       sheet.triangle = number_[whole.triangle];
-    // a sheet is searched alone only where another part of its surface is closer
+    // The sheet is searched alone only if the closest point of the whole surface is not on it.
     return { whole.triangle < 0 || sheet.triangle >= 0 ? sheet : searches.sheet.closest(p, bound), whole };
   }
 
@@ -329,7 +329,7 @@ TriangleMesh tissue_sheet(const PreparedSurface& surface, double side, const std
                           [&](const Vector3d& p)
                           { return (side >= 0 && is_tissue(p + ahead)) || (side <= 0 && is_tissue(p - ahead)); });
   }
-  // no triangle faces tissue if the tissue is thinner than a voxel: keep the whole surface
+  // If no triangle faces tissue, because the tissue is thinner than a voxel, the whole surface is kept.
   if (std::find(facing.begin(), facing.end(), true) == facing.end())
     return mesh;
   grow(mesh, facing, [&](std::size_t t) { return !is_wall(t); });

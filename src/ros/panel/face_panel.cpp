@@ -311,7 +311,7 @@ QSlider* FacePanel::new_slider(const std::string& name)
 void FacePanel::add_muscle(const std::string& muscle, int row)
 {
   QSlider* const slider = slider_of_[muscle] = new_slider(muscle);
-  // a muscle of the middle has both columns
+  // A muscle that has no side gets a slider across both columns.
   muscles_->addWidget(slider, row, ends_with(muscle, "_right") ? 2 : 1, 1, counterpart(muscle).empty() ? 2 : 1);
   connect(slider, &QSlider::valueChanged, this, [this, muscle] { on_muscle(muscle); });
 }
@@ -379,7 +379,7 @@ void FacePanel::on_state(const SimulationState& state)
                        .arg(1e3 * state.internal_energy, 0, 'g', 3)
                        .arg(1e3 * state.kinetic_energy, 0, 'g', 3));
   message_->setText(state.failed ? QString::fromStdString(state.message) : QString::fromStdString(state.backend));
-  // another scene has other muscles
+  // If the muscles differ, the face shows another scene.
   if (!slider_of_.empty() && (slider_of_.size() != state.name.size() ||
                               std::any_of(state.name.begin(), state.name.end(),
                                           [this](const std::string& name) { return slider_of_.count(name) == 0; })))

@@ -15,10 +15,10 @@
 namespace frontalis
 {
 
-/// Contact of bound surfaces with rigid bodies. In each step, before_step() finds the forces on the points, each thread
-/// those on a part of them. After a barrier, add_forces() adds the forces on the nodes of the thread's planes, and sums
-/// the reactions of points in voxels of these planes. after_step() records how far the nodes have moved. Points are
-/// sorted by voxel, so that each node's forces are added in the same order for any number of threads.
+/// Contact of bound surfaces with rigid bodies. In each step, before_step() finds the forces on the points; each thread
+/// processes a part of them. After a barrier, add_forces() adds the forces on the nodes of the thread's planes, and
+/// sums the reactions of points in voxels of these planes. after_step() records how far the nodes have moved. Points
+/// are sorted by voxel, so that each node's forces are added in the same order for any number of threads.
 ///
 /// A point at some distance from all bodies is evaluated again only when nodes and body together have moved that far.
 template <class Real>

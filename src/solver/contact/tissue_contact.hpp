@@ -13,10 +13,10 @@
 namespace frontalis
 {
 
-/// Contact of the tissue's surfaces with each other and with themselves. Each vertex of a surface is pushed out of the
-/// triangles of other surfaces, and the corners of such a triangle are pushed in the opposite direction
-/// (physics/surface_touch.hpp). Each side has half of the stiffness, because the vertices of both are pushed out of the
-/// other.
+/// Contact of the tissue's surfaces with each other and with themselves. Each vertex is pushed out of triangles that
+/// face it, on other surfaces or on other parts of its own, and the corners of such a triangle are pushed in the
+/// opposite direction (physics/surface_touch.hpp). Each side has half of the stiffness, because the vertices of both
+/// are pushed out of the other.
 ///
 /// A vertex forms pairs with at most `most_pairs` triangles that face it, and follows the surface from one triangle to
 /// the next. A grid finds the pairs within three steps: the first sorts all triangles into cells, the second searches
@@ -130,7 +130,7 @@ private:
   bool runs_ = true, rubs_ = false;
   double reach_;  // distance from a triangle within which a vertex forms a pair with it [m]
   std::vector<float> stiffness_, per_area_;
-  std::vector<float> overlap_;  // the depth of contact is measured from it
+  std::vector<float> overlap_;  // gap at rest, not positive, from which the depth of contact is measured [m]
   std::vector<VertexBlock<Real>> vertex_blocks_;
   std::vector<std::int32_t> bound_nodes_;  // ascending
   // first vertex in each plane of voxels; the last two entries are the number of vertices

@@ -66,8 +66,9 @@ struct TissueContact<Real>::View
   Moved moved;
 };
 
-// The kernel calls this function for a pair whose foot is beyond its triangle. The pairs of a vertex are neighbours in
-// a block; if two of them reach the same triangle, the second pair is removed.
+// The kernels call this function for a pair of a vertex and a triangle if the vertex's foot (physics::SurfaceFoot) is
+// beyond the triangle. The pairs of a vertex are neighbours in a block; if two of them reach the same triangle, the
+// second pair is removed.
 template <class Real>
 void TissueContact<Real>::go_on(void* arena, std::int32_t block, int lane)
 {

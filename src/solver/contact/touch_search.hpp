@@ -9,19 +9,21 @@ namespace frontalis
 
 /// The search for triangles that a vertex may touch, for all backends. Its functions are templated on a view of the
 /// surfaces, which has
-///   Number                        the number type
-///   edge_error                    tolerance in barycentric coordinates: a foot beyond an edge by less than this stays
-///   apart(v, w)                   vector from vertex w to vertex v [m]
-///   rest_apart(v, w)              the same at rest
-///   normal(v), overlap(v)         the vertex's normal, and its gap at rest [m]
-///   contact_of(v)                 index of its surface among Model::self_contacts
-///   joined(v, w)                  whether two vertices never touch, because they are close to each other on the
-///   surface corners(t), neighbours(t)     TouchingSurface::Triangle placed(t)                     whether the corners'
-///   present positions are known edge()                        shortest voxel edge [m]
+///   Number                    the number type
+///   edge_error                tolerance in barycentric coordinates: a foot (physics::SurfaceFoot) that is beyond an
+///                             edge by less than this stays in its triangle
+///   apart(v, w)               vector from vertex w to vertex v [m]
+///   rest_apart(v, w)          the same at rest
+///   normal(v), overlap(v)     the vertex's normal, and its gap at rest [m]
+///   contact_of(v)             index of its surface among Model::self_contacts
+///   joined(v, w)              whether two vertices never touch, because they are close along the surface
+///   corners(t), neighbours(t) those of TouchingSurface::Triangle
+///   placed(t)                 whether the present positions of the corners are known
+///   edge()                    shortest voxel edge [m]
 namespace touch_search
 {
 
-// Lengths in shortest voxel edges.
+// Lengths are in units of the shortest voxel edge.
 /// A vertex and a triangle form a pair up to the first distance in front of the triangle and up to the second depth
 /// behind it.
 constexpr double reach = 0.5, deepest_held = 1;

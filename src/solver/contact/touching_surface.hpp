@@ -39,8 +39,8 @@ public:
 
   /// Whether two vertices never touch, because their distance along the surface is below `joined_within`.
   bool joined(std::size_t v, std::size_t w) const;
-  /// For each source, the first of the sources near it along the surface, as an index into joined_sources(), where they
-  /// are in ascending order; the last entry is the number of all.
+  /// The sources that are near source s along the surface are the entries of joined_sources() from joined_begin()[s] up
+  /// to, but not including, joined_begin()[s + 1], in ascending order.
   const std::vector<std::int32_t>& joined_begin() const { return joined_begin_; }
   const std::vector<std::int32_t>& joined_sources() const { return joined_; }
 

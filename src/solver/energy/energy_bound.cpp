@@ -15,7 +15,7 @@ namespace
 
 constexpr double margin = 2;            // safety factor for effects that the bound neglects
 constexpr double active_stretch = 1.2;  // range of stretch in which a fibre pulls: 0.4 to 1.6
-// energy of passive fibres at a stretch of 1.6, divided by tension times volume
+// energy of a passive fibre at a stretch of 1.6, divided by its reference stress times its volume
 constexpr double passive_stretch = 0.3;
 constexpr double small_strain = 1e-4;  // strain whose energy rounding errors alone may supply
 

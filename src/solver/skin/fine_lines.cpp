@@ -77,7 +77,7 @@ struct FineLines::Implementation
     }
   }
 
-  // Finds positions and normals of the vertices that halve edges, from those of the vertices that voxels carry.
+  // Finds positions and normals of the vertices in the middles of edges, from those of the vertices bound to voxels.
   void place(SkinState& skin) const
   {
     using Vector = physics::Vec3<float>;

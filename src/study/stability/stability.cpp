@@ -83,7 +83,7 @@ Trial run_case(const StabilityCase& hard_case, const StabilitySettings& settings
   {
     trial.skipped = skipped.why;
   }
-  // the backend refuses what the case needs
+  // If the backend refuses what the case needs, the case is skipped.
   catch (const BackendUnavailable& error)
   {
     trial.skipped = error.what();

@@ -34,8 +34,8 @@ struct Wrinkles
 /// Wrinkles by plate theory (Cao & Hutchinson 2012). `contrast`: Young's modulus of the film divided by that of the
 /// base.
 Wrinkles expected_wrinkles(double contrast);
-/// Stretch normal to a base's plane at which there is no stress in this direction, if the base is stretched by `along`
-/// in its plane. Poisson's ratio is 0.49, in plane strain.
+/// If a base is stretched by `along` in its plane, returns the stretch normal to the plane at which the normal stress
+/// is zero. Poisson's ratio is 0.49, in plane strain.
 double free_stretch(double along);
 
 /// A solver that works in the calling thread.

@@ -5,8 +5,8 @@ namespace frontalis
 namespace
 {
 
-// Distance of two further points from a site, one outside and one inside of it, whose values set the slope of the
-// hull's field.
+// A site is a place on the skin where the depth of the bone is known. The hull's field is given at the bone's point and
+// at two further points, one outside and one inside of it at this distance, which set the slope of the field.
 constexpr double slope_distance = 6e-3;  // [m]
 // Weight of smoothness. Where sites contradict each other, the hull may miss a site by a few tenths of a millimetre.
 constexpr double smoothing = 1e-3;

@@ -12,18 +12,18 @@ namespace
 {
 
 constexpr double default_edge = 1.75e-3, skull_edge = 2e-3;  // [m]
-// Hair is laid on the skin in layers, each within a body of the template: its height, and the width over which it
-// rises.
+// A layer of hair on the part of the skin that is inside a body of the template: its height, and the distance from the
+// border over which it rises to this height.
 struct HairLayer
 {
   const char* body;
   double height, rise;  // [m]
 };
 constexpr HairLayer hair_layers[] = { { "hair", 3.5e-3, 14e-3 }, { "hair_top", 9e-3, 34e-3 } };
-constexpr double hair_margin = 3e-3;    // [m] by which the surface of hair goes on, under the skin, beyond the hairline
-constexpr double hair_sink = 0.9;       // depth of that margin over the distance from the hairline
+constexpr double hair_margin = 3e-3;  // [m] by which the surface of hair goes on, under the skin, beyond the hairline
+constexpr double hair_sink = 0.9;     // depth of that margin below the skin, divided by the distance from the hairline
 constexpr double hairline_wave = 1e-3;  // [m] by which locks shift the hairline
-constexpr double lock_height = 0.12;    // height of a lock over the thickness of the hair
+constexpr double lock_height = 0.12;    // height of a lock divided by the thickness of the hair
 
 constexpr int default_levels = 2;  // subdivisions of the skin from which depths are measured
 
