@@ -150,7 +150,7 @@ struct StepArguments : physics::Kick<float>
   const LawEntry* laws;
   // In strips, a kernel before each step may compute the stress of fibres and of laws other than neo-Hookean. In the
   // step kernel a warp spends as long on one voxel that has them as on 32, so that it computes fibres itself only where
-  // they fill most of the lanes (VoxelCut::stress_apart), and laws only with selective reduced integration.
+  // they fill more than 0.4 of the lanes (VoxelCut::stress_apart), and laws only with selective reduced integration.
   const AddedVoxel* added_voxels;
   AddedStress* added_stress;
   std::uint32_t added_count;  ///< number of added voxels

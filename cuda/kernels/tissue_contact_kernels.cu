@@ -13,7 +13,7 @@ namespace cuda
 constexpr std::uint32_t touch_block = 64;
 
 // The kernels of this file may be launched before the kernel before them has ended (launch_after()). They wait here
-// until it has ended. GPUs before compute capability 9.0 never launch them early.
+// until it has ended. Code for compute capabilities before 9.0 cannot wait, and is never launched early.
 __device__ __forceinline__ void wait_for_kernel_before()
 {
 #if __CUDA_ARCH__ >= 900
@@ -115,12 +115,10 @@ template <class... Parameters, class... Arguments>
 cudaError_t launch_after(void (*kernel)(Parameters...), std::uint32_t blocks, std::uint32_t threads,
                          cudaStream_t stream, const Arguments&... arguments)
 {
-  static const bool early = []
+  static const bool early = [kernel]
   {
-    int device = 0, major = 0;
-    cudaGetDevice(&device);
-    cudaDeviceGetAttribute(&major, cudaDevAttrComputeCapabilityMajor, device);
-    return major >= 9;
+    cudaFuncAttributes attributes{};
+    return cudaFuncGetAttributes(&attributes, kernel) == cudaSuccess && attributes.ptxVersion >= 90;
   }();
   cudaLaunchAttribute attribute{};
   attribute.id = cudaLaunchAttributeProgrammaticStreamSerialization;

@@ -126,6 +126,8 @@ void run_stability(const StabilityOptions& options)
   if (!options.markdown.empty())
     write_stability(trials, options.markdown);
   const int ran = static_cast<int>(cases.size()) - skipped;
+  if (ran == 0 && skipped > 0)
+    throw Error("no case was run: " + trials.front().second.skipped);
   if (failed > 0)
     throw Error(fmt::format("{} of {} cases failed", failed, ran));
   fmt::print("all {} cases passed in {:.0f} s{}\n", ran, seconds,

@@ -92,6 +92,8 @@ def config_with(scene, names, folder):
     import yaml
 
     path = os.path.join(rospkg.RosPack().get_path("frontalis"), "config", scene + ".rviz")
+    if not os.path.isfile(path):
+        fail("displays:= needs %s, which there is not" % path)
     with open(path, encoding="utf-8") as file:
         config = yaml.safe_load(file)
     displays = {display["Name"].replace(" ", "_"): display for display in config["Visualization Manager"]["Displays"]}

@@ -75,6 +75,16 @@ TEST(Offset, RoundsWhatIsThinnerThanItsDepths)
   EXPECT_NEAR(signed_volume(mesh) / (34e-3 * 24e-3 * 14e-3), 1, 0.02);
 }
 
+TEST(Offset, IsClosedWhereDepthsJump)
+{
+  // half-way between the two sides the depth jumps from 4 to 12 mm
+  const Surface box = box_surface("box", { 0, 0, 0 }, { 40e-3, 40e-3, 16e-3 }, 2e-3);
+  const std::vector<Shape::Depth> depths{ { { 0, 0, 8e-3 }, 4e-3 }, { { 0, 0, -8e-3 }, 12e-3 } };
+  const TriangleMesh mesh = load_surface(offset_surface(box, depths, 0.5e-3), 1e-3).mesh;
+  EXPECT_TRUE(unbalanced_edges(mesh).empty());
+  EXPECT_GT(signed_volume(mesh), 0);
+}
+
 TEST(Offset, RefusesOpenSurfacesAndAPlaceWithTwoDepths)
 {
   EXPECT_THROW(load_surface(offset_surface(forehead_surface("skin"), { { { 0, 0, 0 }, 1e-3 } }, 3e-3), 1e-3), Error);

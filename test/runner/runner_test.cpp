@@ -115,8 +115,9 @@ TEST(Runner, DampingChangesWhileTheFaceRuns)
 {
   Runner runner(bar(), settings(Pace::lock_step), {});
   runner.set_expression("pull");
+  const double moving = tip(runner.step(0.005));
   runner.set_damping(1e8);
-  EXPECT_NEAR(tip(runner.step(0.02)), 6e-3, 1e-4) << "so much damping leaves the bar where it is";
+  EXPECT_NEAR(tip(runner.step(0.02)), moving, 5e-5) << "so much damping stops a motion";
   runner.set_damping(-1);
   EXPECT_LT(tip(runner.step(0.1)), 5.5e-3) << "with the damping of the model";
   EXPECT_THROW(runner.set_damping(std::nan("")), Error);
@@ -393,7 +394,6 @@ TEST(Runner, TimeScalingPlaysTheSameClock)
   runner.set_activation({ { "puller", 0.2 } });
   const Frame scaled = runner.step(0.04);
   EXPECT_NEAR(scaled.time, 0.04, 1e-12);
-  // without time scaling the same time takes four times as many steps
   Runner plain(bar(), settings(Pace::lock_step), {});
   plain.set_activation({ { "puller", 0.2 } });
   EXPECT_NEAR(static_cast<double>(scaled.steps), static_cast<double>(plain.step(0.04).steps) / 4, 0.1 * scaled.steps);

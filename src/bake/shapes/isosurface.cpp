@@ -17,8 +17,8 @@ class Marching
 {
 public:
   /// `half`: the side of the box at the lowest y is a plane of symmetry, through which the surface goes on.
-  Marching(const std::function<double(const Vector3d&)>& f, const Box& box, double edge, bool half)
-      : origin_(box.min()), edge_(edge), half_(half)
+  Marching(const std::function<double(const Vector3d&)>& f, const Box& box, double edge, bool half, double error)
+      : origin_(box.min()), edge_(edge), error_(error), half_(half)
   {
     for (int a = 0; a < 3; ++a)
       size_[a] = std::max(2, static_cast<int>(std::ceil(box.sizes()[a] / edge)) + 1);
@@ -63,7 +63,7 @@ private:
   }
 
   /// If |f| is at least this value [m], the surface is farther away than the points of a block and their neighbours.
-  double far() const { return 1.5 * block * edge_; }
+  double far() const { return 1.5 * block * edge_ + error_; }
   bool near(const Index& i) const { return std::abs(values_[number(i)]) < far(); }
 
   /// Fills the values at a block of grid points. If the block's middle is far from the surface, all points get its
@@ -157,7 +157,7 @@ private:
   }
 
   Vector3d origin_;
-  double edge_;
+  double edge_, error_;
   bool half_;
   Index size_{};
   std::vector<double> values_;
@@ -166,9 +166,10 @@ private:
 
 }  // namespace
 
-TriangleMesh isosurface(const std::function<double(const Vector3d&)>& f, const Box& box, double edge, bool mirrored)
+TriangleMesh isosurface(const std::function<double(const Vector3d&)>& f, const Box& box, double edge, bool mirrored,
+                        double error)
 {
-  TriangleMesh mesh = Marching(f, box, edge, mirrored).surface();
+  TriangleMesh mesh = Marching(f, box, edge, mirrored, error).surface();
   if (mirrored)
   {
     TriangleMesh image = mesh;

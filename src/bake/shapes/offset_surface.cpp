@@ -32,7 +32,8 @@ TriangleMesh make_offset(const Shape& shape, const TriangleMesh& above)
     const ClosestPoint closest = surface.tree().closest(p);
     return surface.signed_distance(p, closest) + depth_at(closest.point);
   };
-  TriangleMesh mesh = isosurface(f, surface.box(), shape.edge > 0 ? shape.edge : default_edge, false);
+  // The depth jumps where the closest point does.
+  TriangleMesh mesh = isosurface(f, surface.box(), shape.edge > 0 ? shape.edge : default_edge, false, *most - *least);
   if (mesh.triangles.empty())
     throw failure("offset: no point is as deep as the depths ask for, {:.3g} to {:.3g} mm", 1e3 * *least, 1e3 * *most);
   return mesh;

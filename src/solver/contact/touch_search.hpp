@@ -17,7 +17,8 @@ namespace frontalis
 ///   normal(v), overlap(v)     the vertex's normal, and its gap at rest [m]
 ///   contact_of(v)             index of its surface among Model::self_contacts
 ///   joined(v, w)              whether two vertices never touch, because they are close along the surface
-///   corners(t), neighbours(t) those of TouchingSurface::Triangle
+///   corners(t)                TouchingSurface::Triangle::vertex
+///   neighbours(t)             TouchingSurface::Triangle::neighbour
 ///   placed(t)                 whether the present positions of the corners are known
 ///   edge()                    shortest voxel edge [m]
 namespace touch_search

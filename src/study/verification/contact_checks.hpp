@@ -9,7 +9,7 @@
 namespace frontalis
 {
 
-/// Calls `verify` for each backend of this machine. Backends that do not compute contact are listed as skipped.
+/// Calls `verify`, and lists as skipped that a backend does not compute what it needs.
 inline void unless_unavailable(Finding& finding, const std::function<void()>& verify)
 {
   try
@@ -23,6 +23,7 @@ inline void unless_unavailable(Finding& finding, const std::function<void()>& ve
   }
 }
 
+/// Calls `verify` for each backend of this machine.
 inline void on_every_backend(Finding& finding, const std::function<void(const Backend&)>& verify)
 {
   for (const Backend& backend : available_backends())

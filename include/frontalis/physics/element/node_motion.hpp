@@ -2,6 +2,8 @@
 
 #include "frontalis/physics/number.hpp"
 
+#include <algorithm>
+
 namespace frontalis
 {
 namespace physics
@@ -18,14 +20,13 @@ struct Kick
   T impulse[3];  ///< gain times gravity [m/s]
 };
 
-/// `damping`: mass-proportional [1/s]; `seconds`: time over which forces change velocities; gravity [m/s2].
+/// `damping`: mass-proportional [1/s]; `seconds`: time over which forces change velocities; gravity [m/s2]. Damping
+/// above 1.8 / `seconds` leaves a nineteenth of a velocity: central differences would turn velocities round instead.
 template <class T, class Gravity>
 Kick<T> kick_of(double damping, double seconds, const Gravity& gravity)
 {
-  const double gain = seconds / (1 + 0.5 * damping * seconds);
-  Kick<T> kick{ static_cast<T>((1 - 0.5 * damping * seconds) / (1 + 0.5 * damping * seconds)),
-                static_cast<T>(gain),
-                {} };
+  const double half = 0.5 * damping * seconds, limited = std::min(half, 0.9), gain = seconds / (1 + half);
+  Kick<T> kick{ static_cast<T>((1 - limited) / (1 + limited)), static_cast<T>(gain), {} };
   for (int axis = 0; axis < 3; ++axis)
     kick.impulse[axis] = static_cast<T>(gain * gravity[axis]);
   return kick;
