@@ -82,9 +82,16 @@ class Fit(unittest.TestCase):
         wait(lambda: abs(self.face.target()["lift"] - 0.3) < 1e-6, "the end of the table")
 
     def test_can_be_cancelled(self):
-        self.send(landmark=["tip"], target=[Vector3(0, 0, 1e-3)], runs=-1, apply=True)
-        self.client.cancel_goal()
-        self.assertIn(self.outcome(), (GoalStatus.PREEMPTED, GoalStatus.RECALLED))
+        for _ in range(20):
+            self.send(landmark=["tip"], target=[Vector3(0, 0, 1e-3)], runs=-1, apply=True)
+            self.client.cancel_goal()
+            outcome = self.outcome()
+            if outcome != GoalStatus.SUCCEEDED:
+                break
+            # the fit ended before it could be cancelled
+            self.face.command(lift=0)
+            wait(lambda: self.face.target() == {"lift": 0}, "the muscle to relax")
+        self.assertIn(outcome, (GoalStatus.PREEMPTED, GoalStatus.RECALLED))
         self.assertEqual(self.face.target(), {"lift": 0})
 
 

@@ -4,7 +4,6 @@
 import math
 import unittest
 
-import numpy as np
 import rospy
 import rostest
 import tf2_ros
@@ -25,15 +24,18 @@ class Parts(unittest.TestCase):
 
     def place(self, marker, points):
         """The middle of points of a marker, in the parent frame of the face."""
-        def pose_of(translation, q):
-            turn = np.array([[1 - 2 * (q.y**2 + q.z**2), 2 * (q.x * q.y - q.w * q.z), 2 * (q.x * q.z + q.w * q.y)],
-                             [2 * (q.x * q.y + q.w * q.z), 1 - 2 * (q.x**2 + q.z**2), 2 * (q.y * q.z - q.w * q.x)],
-                             [2 * (q.x * q.z - q.w * q.y), 2 * (q.y * q.z + q.w * q.x), 1 - 2 * (q.x**2 + q.y**2)]])
-            return lambda point: turn @ point + [translation.x, translation.y, translation.z]
+        def moved(point, translation, q):
+            """A point turned by a unit quaternion and shifted."""
+            x, y, z = point
+            # twice the cross product of the quaternion's vector and the point
+            cross = 2 * (q.y * z - q.z * y), 2 * (q.z * x - q.x * z), 2 * (q.x * y - q.y * x)
+            return (x + q.w * cross[0] + q.y * cross[2] - q.z * cross[1] + translation.x,
+                    y + q.w * cross[1] + q.z * cross[0] - q.x * cross[2] + translation.y,
+                    z + q.w * cross[2] + q.x * cross[1] - q.y * cross[0] + translation.z)
 
         frame = self.frames.lookup_transform("neck", marker.header.frame_id, rospy.Time(0), rospy.Duration(LIMIT)).transform
-        to_frame, to_parent = pose_of(marker.pose.position, marker.pose.orientation), pose_of(frame.translation, frame.rotation)
-        return to_parent(to_frame(np.mean([(p.x, p.y, p.z) for p in points], axis=0)))
+        middle = [sum(getattr(p, axis) for p in points) / len(points) for axis in "xyz"]
+        return moved(moved(middle, marker.pose.position, marker.pose.orientation), frame.translation, frame.rotation)
 
     def test_are_published(self):
         self.face.wait_until_ready()
@@ -48,7 +50,7 @@ class Parts(unittest.TestCase):
         self.assertAlmostEqual(ball.scale.x, 0.024, 4)
         middle = self.place(ball, [Point()])
         self.assertAlmostEqual(middle[2], -0.022, 4)
-        looks = self.place(iris, iris.points) - middle
+        looks = [a - b for a, b in zip(self.place(iris, iris.points), middle)]
         self.assertAlmostEqual(looks[0], 0.0115, delta=1e-3)
         self.assertAlmostEqual(looks[1], 0, 4)
 
