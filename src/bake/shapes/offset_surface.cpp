@@ -3,6 +3,8 @@
 #include "bake/shapes/isosurface.hpp"
 #include "bake/shapes/radial_field.hpp"
 
+#include <algorithm>
+
 namespace frontalis
 {
 
@@ -25,17 +27,18 @@ TriangleMesh make_offset(const Shape& shape, const TriangleMesh& above)
   }
   const RadialField table(places, depths, RadialField::Polynomial::constant, 0);
   // Interpolated depths stay between the smallest and the largest depth of the table.
-  const auto [least, most] = std::minmax_element(depths.begin(), depths.end());
-  const auto depth_at = [&](const Vector3d& p) { return std::min(*most, std::max(*least, table(p))); };
+  const double least = *std::min_element(depths.begin(), depths.end());
+  const double most = *std::max_element(depths.begin(), depths.end());
+  const auto depth_at = [&](const Vector3d& p) { return std::clamp(table(p), least, most); };
   const auto f = [&](const Vector3d& p)
   {
     const ClosestPoint closest = surface.tree().closest(p);
     return surface.signed_distance(p, closest) + depth_at(closest.point);
   };
   // The depth jumps where the closest point does.
-  TriangleMesh mesh = isosurface(f, surface.box(), shape.edge > 0 ? shape.edge : default_edge, false, *most - *least);
+  TriangleMesh mesh = isosurface(f, surface.box(), shape.edge > 0 ? shape.edge : default_edge, false, most - least);
   if (mesh.triangles.empty())
-    throw failure("offset: no point is as deep as the depths ask for, {:.3g} to {:.3g} mm", 1e3 * *least, 1e3 * *most);
+    throw failure("offset: no point is as deep as the depths ask for, {:.3g} to {:.3g} mm", 1e3 * least, 1e3 * most);
   return mesh;
 }
 
