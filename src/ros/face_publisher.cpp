@@ -81,7 +81,7 @@ void FacePublisher::start(std::shared_ptr<const Model> model, const std::string&
   wrenches_.clear();
   for (const BodyShape& shape : shapes_)
   {
-    // Tissue does not touch a body that is only shown, such as the teeth.
+    // Tissue does not touch a body that is only shown, such as the back of a head.
     if (shape.only_shown)
     {
       wrenches_.emplace_back();

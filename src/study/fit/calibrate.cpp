@@ -21,12 +21,12 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double margin = 1.2;           // measured range of a motion, divided by the range in the poses
-constexpr double deviation = 1e-4;       // standard deviation of measured places of landmarks [m]
-constexpr double gain_deviation = 1;     // standard deviation of gains from 1, a weak preference
-constexpr int iterations = 10;           // number of Gauss-Newton iterations
-constexpr double millimetre = 1e-3;      // [m]
-constexpr double degree = 0.0174532925;  // [rad]
+constexpr double margin = 1.2;        // measured range of a motion, divided by the range in the poses
+constexpr double deviation = 1e-4;    // standard deviation of measured places of landmarks [m]
+constexpr double gain_deviation = 1;  // standard deviation of gains from 1, a weak preference
+constexpr int iterations = 10;        // number of Gauss-Newton iterations
+constexpr double millimetre = 1e-3;   // [m]
+constexpr double degree = 3.14159265358979323846 / 180;  // [rad]
 
 // The recorded poses as vectors, and what the latest simulation has shown of each.
 struct Poses
