@@ -11,8 +11,6 @@ namespace frontalis
 namespace
 {
 
-double read_length(const Node& node, const Bound& bound = positive) { return node.number(Dimension::length, bound, 0); }
-
 Vector3 read_place(const Node& node) { return node.vector(Dimension::length, any_number, { 0, 0, 0 }); }
 
 /// Reads a file that the template names and that lies in the same folder: calls read(root) and passes on its faults.

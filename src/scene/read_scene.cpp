@@ -77,6 +77,8 @@ void read_root(const Node& root, const SceneOptions& options, Scene& scene)
 
 }  // namespace
 
+double read_length(const Node& node, const Bound& bound) { return node.number(Dimension::length, bound, 0); }
+
 double read_length_unit(const Node& node, double fallback)
 {
   try

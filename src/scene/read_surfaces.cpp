@@ -9,8 +9,6 @@ namespace frontalis
 namespace
 {
 
-double read_length(const Node& node) { return node.number(Dimension::length, positive, 0); }
-
 // Folder of the mesh files. Its existence is checked when the first file is read, because shapes need no folder.
 class MeshFolder
 {

@@ -59,6 +59,8 @@ Region read_region(const Node& node);
 /// Reads the mapping in a YAML file. Throws Error if this fails; messages use `what` and `expected`.
 YAML::Node load_yaml(const std::string& path, const std::string& what, const std::string& expected);
 
+/// Reads a length [m]; 0 if the value is absent or wrong.
+double read_length(const Node& node, const Bound& bound = positive);
 /// Reads the name of a length unit and returns the unit [m]; `fallback` if the value is absent or wrong.
 double read_length_unit(const Node& node, double fallback);
 

@@ -23,6 +23,8 @@ namespace frontalis
 namespace physics
 {
 
+constexpr double pi = 3.14159265358979323846;
+
 /// The functions that a law needs of its number type beyond + - * / and comparisons. This version is for scalars; the
 /// CPU backend specialises it for SIMD batches.
 template <class T>

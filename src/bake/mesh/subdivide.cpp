@@ -11,7 +11,7 @@ namespace frontalis
 namespace
 {
 
-using Face = std::vector<std::int32_t>;
+using Polygon = std::vector<std::int32_t>;
 
 struct Edge
 {
@@ -23,7 +23,7 @@ struct Edge
 struct EdgeTable
 {
   std::vector<Edge> edges;
-  std::vector<Face> of_face;
+  std::vector<Polygon> of_face;
 
   explicit EdgeTable(const PolygonMesh& mesh)
   {
@@ -32,7 +32,7 @@ struct EdgeTable
     of_face.resize(mesh.faces.size());
     for (std::size_t f = 0; f < mesh.faces.size(); ++f)
     {
-      const Face& face = mesh.faces[f];
+      const Polygon& face = mesh.faces[f];
       for (std::size_t c = 0; c < face.size(); ++c)
       {
         const std::int32_t from = face[c], to = face[(c + 1) % face.size()];
@@ -55,7 +55,7 @@ struct EdgeTable
   }
 };
 
-Vector3d middle(const PolygonMesh& mesh, const Face& face)
+Vector3d middle(const PolygonMesh& mesh, const Polygon& face)
 {
   Vector3d sum = Vector3d::Zero();
   for (const std::int32_t v : face)
@@ -87,7 +87,7 @@ std::vector<Ring> rings_of(const PolygonMesh& mesh, const EdgeTable& table)
         ++ring.rim_edges;
       }
     }
-  for (const Face& face : mesh.faces)
+  for (const Polygon& face : mesh.faces)
   {
     const Vector3d point = middle(mesh, face);
     for (std::size_t c = 0; c < face.size(); ++c)
@@ -119,7 +119,7 @@ PolygonMesh subdivide_once(const PolygonMesh& mesh)
   }
   std::vector<Vector3d> face_points;
   face_points.reserve(mesh.faces.size());
-  for (const Face& face : mesh.faces)
+  for (const Polygon& face : mesh.faces)
     face_points.push_back(middle(mesh, face));
   for (const Edge& edge : table.edges)
   {
@@ -133,8 +133,8 @@ PolygonMesh subdivide_once(const PolygonMesh& mesh)
   const auto first_face = static_cast<std::int32_t>(first_edge + table.edges.size());
   for (std::size_t f = 0; f < mesh.faces.size(); ++f)
   {
-    const Face& face = mesh.faces[f];
-    const Face& edges = table.of_face[f];
+    const Polygon& face = mesh.faces[f];
+    const Polygon& edges = table.of_face[f];
     for (std::size_t c = 0; c < face.size(); ++c)
     {
       fine.faces.push_back({ face[c], first_edge + edges[c], first_face + static_cast<std::int32_t>(f),
@@ -248,7 +248,7 @@ TriangleMesh subdivide(const PolygonMesh& cage, int levels, const std::vector<st
       result.vertices.push_back(to_array(p));
   for (std::size_t f = 0; f < mesh.faces.size(); ++f)
   {
-    const Face& face = mesh.faces[f];
+    const Polygon& face = mesh.faces[f];
     if (!groups.empty() && std::find(groups.begin(), groups.end(), cage.group_names[mesh.groups[f]]) == groups.end())
       continue;
     for (std::size_t c = 2; c < face.size(); ++c)

@@ -12,7 +12,7 @@ namespace frontalis
 namespace
 {
 
-constexpr std::size_t grain = 1024;
+constexpr std::size_t points_per_task = 1024;
 constexpr double farthest_landmark = 20e-3;  // largest distance from the skin [m]
 
 // Wavelength of fine lines divided by the longest edge allowed. Halving leaves edges whose mean length is three
@@ -128,7 +128,7 @@ BoundMesh bind_mesh(const TriangleMesh& whole, const Region& crop, const LocalFr
   std::vector<std::int32_t> voxel(count, -1);
   std::vector<std::array<float, 3>> coordinates(count);
   const std::vector<Vector3d> inwards = inward_normals(surface, frame);
-  parallel_for(monitor, count, grain,
+  parallel_for(monitor, count, points_per_task,
                [&](std::size_t v)
                { binder.bind(frame.to_local(to_vector(surface.vertices[v])), inwards[v], voxel[v], coordinates[v]); });
 

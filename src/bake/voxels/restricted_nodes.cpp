@@ -10,7 +10,7 @@ namespace frontalis
 namespace
 {
 
-constexpr std::size_t grain = 4096;
+constexpr std::size_t nodes_per_task = 4096;
 
 /// Signed distance [m] of each node that a surface restricts; NaN for all other nodes.
 using Distances = std::vector<double>;
@@ -43,7 +43,7 @@ public:
     const double bound = std::max(reach, side == 0 ? 0 : 2 * edge_);
     const Box box = to_box(crop);
     Distances distances(positions_.size(), std::nan(""));
-    parallel_for(monitor_, positions_.size(), grain,
+    parallel_for(monitor_, positions_.size(), nodes_per_task,
                  [&](std::size_t n)
                  {
                    const Vector3d& p = positions_[n];

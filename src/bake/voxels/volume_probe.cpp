@@ -8,7 +8,7 @@ namespace frontalis
 namespace
 {
 
-constexpr int samples = 2000;
+constexpr int probe_samples = 2000;
 constexpr double clear_winding = 0.75;  // smallest winding number of a point that is clearly inside
 constexpr double most_unclear = 0.1;    // largest fraction of points inside that are not clearly inside
 
@@ -30,7 +30,7 @@ void check_opening(const Scene& scene, const Volumes& volumes, const Volumes::En
   if (body.closed() || box.isEmpty())
     return;
   int inside = 0, unclear = 0;
-  for (int i = 0; i < samples; ++i)
+  for (int i = 0; i < probe_samples; ++i)
   {
     const Vector3d p = spread_point(box, i);
     const double w = body.tree().winding_number(p);

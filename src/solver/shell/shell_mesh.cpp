@@ -57,7 +57,7 @@ Matrix inverse(const Matrix& a)
 
 // Distances below this fraction of a voxel's edge are rounding errors, because coordinates in a voxel have single
 // precision.
-constexpr double rounding = 1e-5;
+constexpr double coordinate_rounding = 1e-5;
 
 // Returns the positions of a shell's vertices that follow from the voxels at rest. Where such a position differs from
 // the one in Shell::surface by rounding errors only, the one in Shell::surface is returned.
@@ -74,7 +74,7 @@ std::vector<Vector> carried_vertices(const Model& model, const Shell& shell)
     for (std::size_t b = 0; b < 8; ++b)
       carried = carried + weight[b] * vector(rest_position(model, model.voxel_nodes[shell.binding.voxel[v]][b]));
     const Vector own = vector(shell.surface.vertices[v]);
-    places.push_back(norm(own - carried) < rounding * model.spacing[0] ? own : carried);
+    places.push_back(norm(own - carried) < coordinate_rounding * model.spacing[0] ? own : carried);
   }
   return places;
 }

@@ -13,8 +13,6 @@ namespace
 
 using Vector = physics::Vec3<double>;
 
-constexpr double pi = 3.14159265358979323846;
-
 // Edges longer than this fraction of the wavelength do not resolve it.
 constexpr double longest_edge = 1.0 / 3;
 // Heights are computed where the film's largest compression is at least this fraction of the critical one.
@@ -77,8 +75,9 @@ double first_minimum(double slope, double curvature, double third, double fourth
 FilmEquilibrium::FilmEquilibrium(const Model& model)
     : model_(model),
       critical_(film_critical_strain(model.film)),
-      k_(2 * pi / film_wavelength(model.film)),
-      cells_(model.skin.vertices, std::max(2 * pi / k_, *std::max_element(model.spacing.begin(), model.spacing.end()))),
+      k_(2 * physics::pi / film_wavelength(model.film)),
+      cells_(model.skin.vertices,
+             std::max(2 * physics::pi / k_, *std::max_element(model.spacing.begin(), model.spacing.end()))),
       order_(cells_.order()),
       strain_(order_.size())
 {
@@ -144,7 +143,7 @@ void FilmEquilibrium::make_operators()
     }
     begin_.push_back(static_cast<std::int32_t>(neighbour_.size()));
     area_.push_back(static_cast<float>(area[v] * k_ * k_));
-    resolved_.push_back(inside && length[v] * k_ < 2 * pi * longest_edge);
+    resolved_.push_back(inside && length[v] * k_ < 2 * physics::pi * longest_edge);
   }
   membrane_.resize(laplace_.size());
   cells_.set_areas(area_);
@@ -290,7 +289,8 @@ void FilmEquilibrium::make_seed()
     for (int i = 0; i < waves; ++i)
     {
       // The directions of the waves are spread evenly over a sphere.
-      const double z = 1 - (2 * i + 1.0) / waves, turn = pi * (3 - std::sqrt(5.0)) * i, r = std::sqrt(1 - z * z);
+      const double z = 1 - (2 * i + 1.0) / waves, turn = physics::pi * (3 - std::sqrt(5.0)) * i,
+                   r = std::sqrt(1 - z * z);
       sum += std::cos(k_ * (r * std::cos(turn) * at.x + r * std::sin(turn) * at.y + z * at.z) + i * i);
     }
     seed_[v] = static_cast<float>(seed_height * sum / std::sqrt(0.5 * waves));

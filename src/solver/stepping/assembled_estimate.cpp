@@ -10,8 +10,8 @@ namespace
 
 // Margins are needed, because power iteration gives too low an eigenvalue, and the model may stiffen until the next
 // search.
-constexpr double margin = 1.05;  // factor on the squared frequency
-// replaces `margin` in the first search and after recent changes of activation
+constexpr double frequency_margin = 1.05;  // factor on the squared frequency
+// replaces `frequency_margin` in the first search and after recent changes of activation
 constexpr double margin_after_change = 1.25;
 // largest number of steps for which a search is valid; a search takes about 1 % of the time of 2000 steps
 constexpr std::int64_t longest_valid = 2000;
@@ -54,7 +54,7 @@ void AssembledEstimate::renew(const std::vector<float>& activation, const std::v
   if (steps_ < steps_valid_ && (waiting || holds))
     return;
   const double found = search(bound_ > 0 ? iterations : first_iterations);
-  const double allowance = steps_valid_ < longest_valid ? margin_after_change : margin;
+  const double allowance = steps_valid_ < longest_valid ? margin_after_change : frequency_margin;
   share_ = std::isfinite(found) ? std::min(1.0, allowance * found / bound) : 1.0;
   steps_valid_ = steps_valid_ > 0 ? std::min(2 * steps_valid_, longest_valid) : longest_valid;
   steps_ = 0;

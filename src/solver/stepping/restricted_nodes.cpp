@@ -4,6 +4,7 @@
 #include "frontalis/physics/element/node_motion.hpp"
 #include "frontalis/physics/element/sliding_node.hpp"
 #include "frontalis/physics/ramp.hpp"
+#include "solver/stepping/attached_blocks.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -46,12 +47,6 @@ void set(SlidingBlock<Real>& block, int lane, const Point& normal, double offset
   }
   block.offset[lane] = static_cast<Real>(offset);
   block.speed[lane] = static_cast<Real>(speed);
-}
-
-Point rest_point(const Model& model, std::int32_t node)
-{
-  const auto p = rest_position(model, node);
-  return { p[0], p[1], p[2] };
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ constexpr double cautious_share = 0.55;  // cautious steps: fraction of the crit
 constexpr int cautious_plan = 8;         // number of steps in a cautious plan
 constexpr int vibration_plan = 32;       // largest number of steps in a plan while tissue vibrates
 // The following constants define signs of fast change, and the number of cautious steps after each.
-constexpr double growth_allowed = 1.1;  // ratio of squared frequencies of successive plans
+constexpr double growth_between_plans = 1.1;  // ratio of squared frequencies of successive plans
 constexpr int steps_after_stiffening = 128;
 constexpr float activation_change_allowed = 0.3F;  // change of a muscle's activation within a plan
 constexpr int steps_after_a_switch = 48;
@@ -67,7 +67,10 @@ void TimeStepController::slow_down(double share)
   slow_share_ = share;
 }
 
-double TimeStepController::alarming_frequency_squared() const { return growth_allowed * state_.frequency_squared; }
+double TimeStepController::alarming_frequency_squared() const
+{
+  return growth_between_plans * state_.frequency_squared;
+}
 
 TimeStepController::Choice TimeStepController::choose(double remaining, double longest,
                                                       const BackendTraits& backend) const

@@ -18,15 +18,15 @@ namespace frontalis
 namespace
 {
 
-constexpr double young = 30e3, poisson = 0.3, block_poisson = 0.49;                      // young [Pa]
+constexpr double bar_young = 30e3, bar_poisson = 0.3, block_poisson = 0.49;              // young [Pa]
 constexpr Point bar_size{ { 16e-3, 4e-3, 8e-3 } }, block_size{ { 16e-3, 8e-3, 8e-3 } };  // [m]
-constexpr double ramp = 0.1, hold = 0.05;                                                // [s]
+constexpr double bar_ramp = 0.1, bar_hold = 0.05;                                        // [s]
 
 // A box of full voxels. The vertices of its skin (faces y = size and z = size) do not depend on the voxel edge.
 Model box_model(const AccuracySetting& setting, const Point& size, double ratio)
 {
   const AccuracyProfile& profile = setting.profile;
-  VoxelBox box{ {}, profile.voxel, { neo_hookean(young, ratio) } };
+  VoxelBox box{ {}, profile.voxel, { neo_hookean(bar_young, ratio) } };
   for (int axis = 0; axis < 3; ++axis)
   {
     box.size[axis] = static_cast<std::int32_t>(std::lround(size[axis] / box.spacing[axis]));
@@ -59,7 +59,7 @@ Model box_model(const AccuracySetting& setting, const Point& size, double ratio)
 // First Piola-Kirchhoff stress [Pa] along the principal axis with stretch `a`; `b` and `c` are the other stretches.
 double principal_stress(double a, double b, double c)
 {
-  const double mu = shear_modulus(young, block_poisson), kappa = bulk_modulus(young, block_poisson);
+  const double mu = shear_modulus(bar_young, block_poisson), kappa = bulk_modulus(bar_young, block_poisson);
   const double J = a * b * c, I1 = a * a + b * b + c * c;
   return mu * std::pow(J, -2.0 / 3) * (a - I1 / (3 * a)) + kappa * (J - 1) * J / a;
 }
@@ -80,7 +80,7 @@ ClosedForm closed_form(const std::string& name, std::vector<double> edges,
   plan.standard.profile.voxel.fill(plan.edges[1]);
   plan.standard.profile.precision = "double";
   plan.knobs = { "voxel", "hourglass", "integration", "precision", "share", "time_step" };
-  plan.history = { {}, ramp, hold };
+  plan.history = { {}, bar_ramp, bar_hold };
   form.maker.bake = make;
   form.maker.content = [name](const AccuracySetting& setting)
   {
@@ -110,7 +110,7 @@ ClosedForm uniform(const std::string& name, double along, const std::function<vo
 // Displacement [m] of a beam in plane strain (x, z), whose end a shear force lowers by a thousandth of the length.
 Point beam(const Point& p)
 {
-  const double L = bar_size[0], D = bar_size[2], x = p[0], z = p[2] - 0.5 * D, nu = poisson / (1 - poisson);
+  const double L = bar_size[0], D = bar_size[2], x = p[0], z = p[2] - 0.5 * D, nu = bar_poisson / (1 - bar_poisson);
   const double factor = -1e-3 * L / ((4 + 5 * nu) * D * D * L / 4 + 2 * L * L * L);
   return { { -factor * z * ((6 * L - 3 * x) * x + (2 + nu) * (z * z - D * D / 4)), 0,
              factor * (3 * nu * z * z * (L - x) + (4 + 5 * nu) * D * D * x / 4 + (3 * L - x) * x * x) } };
@@ -118,12 +118,12 @@ Point beam(const Point& p)
 
 Model cantilever(const AccuracySetting& setting)
 {
-  Model model = box_model(setting, bar_size, poisson);
+  Model model = box_model(setting, bar_size, bar_poisson);
   prescribe(model, nodes_where(model, [](const auto&) { return true; }), { { false, true, false } });
   const auto ends = [&](const auto& p) { return p[0] == 0 || p[0] > bar_size[0] - 0.5 * model.spacing[0]; };
   for (const auto node : nodes_where(model, ends))
     prescribe(model, { node }, { { true, true, true } }, beam(rest_position(model, static_cast<std::size_t>(node))),
-              ramp);
+              bar_ramp);
   return model;
 }
 
@@ -132,7 +132,7 @@ Model cantilever(const AccuracySetting& setting)
 std::vector<ClosedForm> closed_forms()
 {
   constexpr double drawn = 1.3;
-  const double active = shear_modulus(young, block_poisson);
+  const double active = shear_modulus(bar_young, block_poisson);
   const auto stress = [=](double along)
   { return principal_stress(along, lateral_stretch(along), lateral_stretch(along)) + active * along; };
   const auto contract = [=](Model& model) { add_muscle(model, Muscle{ "bar", active, false, false }, along_x); };
@@ -142,7 +142,7 @@ std::vector<ClosedForm> closed_forms()
   {
     const auto end = [&](const Point& p) { return p[0] > block_size[0] - 0.5 * model.spacing[0]; };
     prescribe(model, nodes_where(model, end), { { true, false, false } }, { { (drawn - 1) * block_size[0], 0, 0 } },
-              ramp);
+              bar_ramp);
   };
   return { closed_form("cantilever", { 4e-3, 2e-3, 1e-3, 0.5e-3 }, cantilever, beam),
            uniform("stretched_block", drawn, draw), bar };

@@ -37,12 +37,12 @@ Controls active_controls(const Solver& solver)
   return controls;
 }
 
-constexpr std::int32_t length = 64, depth = 40;  // size of the block of measure_presence() [voxels]
+constexpr std::int32_t block_length = 64, block_depth = 40;  // size of the block of measure_presence() [voxels]
 
 // Gives an effect to a fraction of the voxels, or of the nodes of the face z = 0.
 void give(Model& model, Effect effect, double share)
 {
-  const auto rows = static_cast<std::int32_t>(std::lround(share * depth));
+  const auto rows = static_cast<std::int32_t>(std::lround(share * block_depth));
   const auto has = [&](std::size_t e) { return model.voxels[e][1] < rows; };
   if (effect == Effect::viscosity)
   {
@@ -62,7 +62,7 @@ void give(Model& model, Effect effect, double share)
   if (effect == Effect::sliding || effect == Effect::friction)
   {
     // The cost of friction is measured in addition to that of sliding, so that all nodes of the face slide.
-    const std::int32_t sliding_rows = effect == Effect::friction ? depth + 1 : rows;
+    const std::int32_t sliding_rows = effect == Effect::friction ? block_depth + 1 : rows;
     const std::int32_t rough_rows = effect == Effect::friction ? rows : 0;
     const auto slide_between = [&](const char* floor, std::int32_t first, std::int32_t last)
     {
@@ -188,7 +188,7 @@ std::vector<PresenceCost> measure_presence(const SolverSettings& settings, doubl
       std::vector<TimedSolver> timed;
       for (const double share : shares)
       {
-        Model model = dense_block(length, depth, depth);
+        Model model = dense_block(block_length, block_depth, block_depth);
         model.gravity = {};
         give(model, effect, share);
         solvers.push_back(solver_of(std::move(model), settings));

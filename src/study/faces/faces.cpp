@@ -32,7 +32,7 @@ std::array<double, 3> moved(const Places& rest, const Places& now, std::size_t l
   return way;
 }
 
-double length(const std::array<double, 3>& v) { return std::hypot(v[0], v[1], v[2]); }
+double norm(const std::array<double, 3>& v) { return std::hypot(v[0], v[1], v[2]); }
 
 double dot(const std::array<double, 3>& a, const std::array<double, 3>& b)
 {
@@ -42,11 +42,11 @@ double dot(const std::array<double, 3>& a, const std::array<double, 3>& b)
 // Time after which a landmark stays close to its last position [s]; NaN if it hardly moves.
 double settling_time(const std::vector<Places>& frames, std::size_t landmark)
 {
-  const double way = length(moved(frames.front(), frames.back(), landmark, {}));
+  const double way = norm(moved(frames.front(), frames.back(), landmark, {}));
   if (way < least_way)
     return NAN;
   std::size_t frame = frames.size() - 1;
-  while (frame > 0 && length(moved(frames[frame - 1], frames.back(), landmark, {})) <= settled_share * way)
+  while (frame > 0 && norm(moved(frames[frame - 1], frames.back(), landmark, {})) <= settled_share * way)
     --frame;
   return static_cast<double>(frame) * frame_seconds;
 }
@@ -69,7 +69,7 @@ FaceRow row_of(const Model& model, const std::string& expression, const std::vec
   row.expression = expression;
   row.landmark = model.landmarks[landmark];
   row.moved = moved(frames.front(), frames.back(), landmark, row.landmark);
-  row.size = length(row.moved);
+  row.size = norm(row.moved);
   row.angle = NAN;
   row.settled = settling_time(frames, landmark);
   row.least = row.most = NAN;

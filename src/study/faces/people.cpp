@@ -1,6 +1,7 @@
 #include "frontalis/study/faces.hpp"
 
 #include "frontalis/error.hpp"
+#include "frontalis/study/table.hpp"
 
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
@@ -12,8 +13,6 @@ namespace frontalis
 {
 namespace
 {
-
-constexpr double millimetre = 1e-3;
 
 Error fault(const std::string& path, const YAML::Mark& mark, const std::string& text)
 {

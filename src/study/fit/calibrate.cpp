@@ -1,6 +1,7 @@
 #include "frontalis/study/calibrate.hpp"
 
 #include "frontalis/study/csv.hpp"
+#include "frontalis/study/table.hpp"
 #include "study/fit/influence.hpp"
 
 #include <fmt/format.h>
@@ -21,11 +22,10 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double margin = 1.2;        // measured range of a motion, divided by the range in the poses
-constexpr double deviation = 1e-4;    // standard deviation of measured places of landmarks [m]
-constexpr double gain_deviation = 1;  // standard deviation of gains from 1, a weak preference
-constexpr int iterations = 10;        // number of Gauss-Newton iterations
-constexpr double millimetre = 1e-3;   // [m]
+constexpr double range_margin = 1.2;         // measured range of a motion, divided by the range in the poses
+constexpr double deviation = 1e-4;           // standard deviation of measured places of landmarks [m]
+constexpr double gain_deviation = 1;         // standard deviation of gains from 1, a weak preference
+constexpr int gauss_newton_iterations = 10;  // number of Gauss-Newton iterations
 constexpr double degree = 3.14159265358979323846 / 180;  // [rad]
 
 // The recorded poses as vectors, and what the latest simulation has shown of each.
@@ -85,8 +85,8 @@ std::vector<Unknown> parts_of(const std::vector<Actuator>& actuators, const Pose
         values[part] += per_unit * position[static_cast<Index>(a)];
     for (const auto& [part, value] : values)
     {
-      parts[part].lower = std::min(parts[part].lower, margin * value);
-      parts[part].upper = std::max(parts[part].upper, margin * value);
+      parts[part].lower = std::min(parts[part].lower, range_margin * value);
+      parts[part].upper = std::max(parts[part].upper, range_margin * value);
     }
   }
   std::vector<Unknown> out;
@@ -234,7 +234,7 @@ Calibration calibrate(const std::shared_ptr<const Model>& model, const std::vect
   const auto solve = [&]
   {
     const double weight = std::pow(deviation / gain_deviation, 2);
-    for (int i = 0; i < iterations; ++i)
+    for (int i = 0; i < gauss_newton_iterations; ++i)
     {
       MatrixXd h = weight * MatrixXd::Identity(gains.size(), gains.size());
       VectorXd g = weight * (VectorXd::Ones(gains.size()) - gains);

@@ -52,7 +52,7 @@ std::array<double, 3> place_in(const VectorXd& places, std::size_t landmark)
 }
 
 // Distance in the coordinates that the target gives [m].
-double distance(const std::array<double, 3>& a, const std::array<double, 3>& b)
+double distance_between(const std::array<double, 3>& a, const std::array<double, 3>& b)
 {
   double sum = 0;
   for (std::size_t axis = 0; axis < 3; ++axis)
@@ -108,7 +108,7 @@ std::vector<FittedLandmark> fitted_landmarks(const Model& model, const FitReques
     row.reached.fill(NAN);
     if (reached.size() > 0)
       row.reached = place_in(reached, landmark);
-    row.error = distance(place_in(targets, landmark), reached.size() > 0 ? row.reached : row.expected);
+    row.error = distance_between(place_in(targets, landmark), reached.size() > 0 ? row.reached : row.expected);
   }
   return out;
 }

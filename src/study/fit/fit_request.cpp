@@ -1,6 +1,7 @@
 #include "frontalis/study/fit.hpp"
 
 #include "frontalis/error.hpp"
+#include "frontalis/study/table.hpp"
 
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
@@ -12,8 +13,6 @@ namespace frontalis
 {
 namespace
 {
-
-constexpr double millimetre = 1e-3;
 
 // Reads three coordinates [mm]; null means a free coordinate.
 std::array<double, 3> coordinates_from(const YAML::Node& node)

@@ -1,6 +1,7 @@
 #include "frontalis/study/fit.hpp"
 
 #include "frontalis/study/csv.hpp"
+#include "frontalis/study/table.hpp"
 #include "study/fit/landmark_fit.hpp"
 
 #include <fmt/format.h>
@@ -15,8 +16,6 @@ namespace
 
 using Eigen::Index;
 using Eigen::VectorXd;
-
-constexpr double millimetre = 1e-3;
 
 // Displacements from rest, one vector per time; NaN for landmarks that the track does not contain.
 std::vector<VectorXd> targets_of(const LandmarkTrack& track, const std::vector<std::size_t>& landmarks, Index size)

@@ -14,7 +14,7 @@ namespace
 
 using Vector = Eigen::Vector3d;
 
-Vector vector(const std::array<float, 3>& p) { return { p[0], p[1], p[2] }; }
+Vector to_eigen(const std::array<float, 3>& p) { return { p[0], p[1], p[2] }; }
 
 // Vertices sorted into cubes of space, so that those near a point are found quickly.
 class Cells
@@ -23,7 +23,7 @@ public:
   Cells(const std::vector<std::array<float, 3>>& points, double edge) : points_(points), edge_(edge)
   {
     for (std::size_t i = 0; i < points.size(); ++i)
-      cells_[key(vector(points[i]), {})].push_back(i);
+      cells_[key(to_eigen(points[i]), {})].push_back(i);
   }
   template <class Visit>
   void near(const Vector& at, Visit&& visit) const
@@ -33,7 +33,7 @@ public:
         for (int z = -1; z <= 1; ++z)
           if (const auto cell = cells_.find(key(at, { x, y, z })); cell != cells_.end())
             for (const std::size_t i : cell->second)
-              if ((vector(points_[i]) - at).squaredNorm() < edge_ * edge_)
+              if ((to_eigen(points_[i]) - at).squaredNorm() < edge_ * edge_)
                 visit(i);
   }
 
@@ -53,8 +53,8 @@ std::vector<double> areas_of(const SkinState& skin, const SkinTriangles& triangl
   std::vector<double> areas(skin.vertices.size(), 0);
   for (const auto& t : triangles)
   {
-    const Vector a = vector(skin.vertices[t[0]]);
-    const double area = (vector(skin.vertices[t[1]]) - a).cross(vector(skin.vertices[t[2]]) - a).norm() / 6;
+    const Vector a = to_eigen(skin.vertices[t[0]]);
+    const double area = (to_eigen(skin.vertices[t[1]]) - a).cross(to_eigen(skin.vertices[t[2]]) - a).norm() / 6;
     for (const std::int32_t v : t)
       areas[v] += area;
   }
@@ -75,18 +75,18 @@ SmoothSkin smooth_skin(const SkinState& skin, const SkinTriangles& triangles, do
   SmoothSkin out;
   for (std::size_t i = 0; i < skin.vertices.size(); ++i)
   {
-    const Vector at = vector(skin.vertices[i]), own = vector(skin.normals[i]);
+    const Vector at = to_eigen(skin.vertices[i]), own = to_eigen(skin.normals[i]);
     std::vector<std::pair<std::size_t, double>> near;  // vertices near a point, and their weights
     Vector normal = Vector::Zero();
     cells.near(at,
                [&](std::size_t j)
                {
                  // The other side of a thin sheet, such as a lip, does not belong to this skin.
-                 if (own.dot(vector(skin.normals[j])) < -0.5)
+                 if (own.dot(to_eigen(skin.normals[j])) < -0.5)
                    return;
-                 const double d = (vector(skin.vertices[j]) - at).norm() / window;
+                 const double d = (to_eigen(skin.vertices[j]) - at).norm() / window;
                  near.emplace_back(j, areas[j] * std::exp(-0.5 * d * d));
-                 normal += near.back().second * vector(skin.normals[j]);
+                 normal += near.back().second * to_eigen(skin.normals[j]);
                });
     normal.normalize();
     const Vector a = normal.unitOrthogonal(), b = normal.cross(a);
@@ -94,7 +94,7 @@ SmoothSkin smooth_skin(const SkinState& skin, const SkinTriangles& triangles, do
     Eigen::Matrix<double, 6, 1> right = Eigen::Matrix<double, 6, 1>::Zero();
     for (const auto& [j, weight] : near)
     {
-      const Vector d = (vector(skin.vertices[j]) - at) / window;
+      const Vector d = (to_eigen(skin.vertices[j]) - at) / window;
       const double x = d.dot(a), y = d.dot(b);
       Eigen::Matrix<double, 6, 1> terms;
       terms << 1, x, y, x * x, x * y, y * y;
@@ -164,15 +164,15 @@ std::map<int, std::vector<SectionPoint>> sections_of(const SkinState& rest, cons
   std::map<int, std::vector<SectionPoint>> sections;
   const auto cross_edge = [&](std::size_t v, std::size_t w)
   {
-    const double from = vector(now.vertices[v]).dot(direction) / settings.section_distance;
-    const double to = vector(now.vertices[w]).dot(direction) / settings.section_distance;
+    const double from = to_eigen(now.vertices[v]).dot(direction) / settings.section_distance;
+    const double to = to_eigen(now.vertices[w]).dot(direction) / settings.section_distance;
     for (int k = static_cast<int>(std::ceil(std::min(from, to))); k < std::max(from, to); ++k)
     {
       const double share = (k - from) / (to - from);
       const auto between = [share](const Vector& a, const Vector& b) -> Vector { return a + share * (b - a); };
-      const Vector at_rest = between(vector(rest.vertices[v]), vector(rest.vertices[w]));
+      const Vector at_rest = between(to_eigen(rest.vertices[v]), to_eigen(rest.vertices[w]));
       SectionPoint p{ 0, heights[v] + share * (heights[w] - heights[v]),
-                      between(vector(now.vertices[v]), vector(now.vertices[w])),
+                      between(to_eigen(now.vertices[v]), to_eigen(now.vertices[w])),
                       between(smooth.foot[v], smooth.foot[w]), true };
       p.along = p.foot.dot(across);
       for (int axis = 0; axis < 3; ++axis)

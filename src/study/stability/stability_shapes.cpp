@@ -1,5 +1,6 @@
 // Hard cases of shapes: crushed, twisted, scrambled, turning, dangling and slender voxels.
 
+#include "frontalis/physics/number.hpp"
 #include "frontalis/study/statics.hpp"
 #include "study/stability/stability_cases.hpp"
 
@@ -11,8 +12,6 @@ namespace frontalis
 {
 namespace
 {
-
-const double pi = std::acos(-1.0);
 
 // Checks that the stored energy has been released and voxels have regained their volumes.
 void expect_rest(CaseRun& run, GuardedTrial& motion, const std::string& of, double stored_before)
@@ -61,7 +60,7 @@ void twisted(CaseRun& run)
   double stored = 0;
   for (const int quarter : { 1, 2, 1, 0 })
   {
-    const RigidTransform turned = turned_about({ { 0, 0, quarter * pi / 2 } }, axis);
+    const RigidTransform turned = turned_about({ { 0, 0, quarter * physics::pi / 2 } }, axis);
     motion.advance({ 0.5 * run.seconds("turn"), motion.controls(0, turned), 10 });
     if (quarter == 2)
       stored = motion.energies()["internal"] + motion.energies()["hourglass"];
@@ -82,7 +81,7 @@ void released(CaseRun& run)
     { "twisted",
       [&](const Point& p)
       {
-        const double turn = pi * p[2] / (1e-3 * model.size[2]), c = std::cos(turn), s = std::sin(turn);
+        const double turn = physics::pi * p[2] / (1e-3 * model.size[2]), c = std::cos(turn), s = std::sin(turn);
         const double x = p[0] - 0.5e-3 * model.size[0], y = p[1] - 0.5e-3 * model.size[1];
         return Point{ { c * x - s * y - p[0], s * x + c * y - p[1], 0 } };
       } }
@@ -135,7 +134,7 @@ void scrambled(CaseRun& run)
 void rigid_rotation(CaseRun& run)
 {
   const Model model = voxel_model(run.size(), 1e-3, soft_tissue());
-  const double rate = 2 * pi * run.number("rate", "1/s");
+  const double rate = 2 * physics::pi * run.number("rate", "1/s");
   Vectors u(model.nodes.size()), v;
   const double third = 1 / std::sqrt(3.0);
   const auto middle = 0.5e-3 * vector({ { 1.0 * model.size[0], 1.0 * model.size[1], 1.0 * model.size[2] } });
@@ -147,7 +146,7 @@ void rigid_rotation(CaseRun& run)
   GuardedTrial motion(run, model);
   motion.set(u, v);
   const double kinetic = motion.energies()["kinetic"];
-  motion.advance({ run.number("turns") * 2 * pi / rate, motion.controls(), 50 });
+  motion.advance({ run.number("turns") * 2 * physics::pi / rate, motion.controls(), 50 });
   motion.check_balance("ten turns", "rigid_rotation", "A free block turns ten times");
   run.check_relative("kinetic energy after ten turns", "uJ", 1e6 * kinetic, 1e6 * motion.energies()["kinetic"],
                      "kinetic_energy");

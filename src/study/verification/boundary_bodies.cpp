@@ -1,5 +1,6 @@
 #include "study/verification/boundary_bodies.hpp"
 
+#include "frontalis/physics/number.hpp"
 #include "frontalis/study/table.hpp"
 
 #include <Eigen/Dense>
@@ -15,8 +16,7 @@ namespace frontalis
 namespace
 {
 
-constexpr double pi = 3.14159265358979323846;
-constexpr double young = 30e3, density = 1000;  // [Pa], [kg/m3]
+constexpr double body_young = 30e3, body_density = 1000;  // [Pa], [kg/m3]
 
 Point to_point(const Eigen::Vector3d& v) { return { { v[0], v[1], v[2] } }; }
 Eigen::Vector3d to_vector(const Point& p) { return { p[0], p[1], p[2] }; }
@@ -36,7 +36,7 @@ SceneMaterial material_of(const std::string& name, double modulus, double poisso
 {
   SceneMaterial material;
   material.name = name;
-  material.density = density;
+  material.density = body_density;
   material.parameters = { { "young", modulus }, { "poisson", poisson } };
   return material;
 }
@@ -47,7 +47,7 @@ Scene scene_between(const Surface& inner, const Surface& outer, double poisson)
   Scene scene;
   scene.file = "boundary body";
   scene.surfaces = { inner, outer };
-  scene.materials = { material_of("tissue", young, poisson) };
+  scene.materials = { material_of("tissue", body_young, poisson) };
   Volume volume;
   volume.name = "tissue";
   volume.inside = { outer.name };
@@ -87,8 +87,9 @@ std::pair<double, double> radial_solution(double a, double b, double c, double p
   for (int e = 0; e < n; ++e)
   {
     const double d = (b - a) / n, r = a + (e + 0.5) * d;
-    const double mu = shear_modulus(young, poisson) * (r > c ? 10 : 1);
-    const double lambda = (bulk_modulus(young, poisson) - 2.0 / 3 * shear_modulus(young, poisson)) * (r > c ? 10 : 1);
+    const double mu = shear_modulus(body_young, poisson) * (r > c ? 10 : 1);
+    const double lambda =
+        (bulk_modulus(body_young, poisson) - 2.0 / 3 * shear_modulus(body_young, poisson)) * (r > c ? 10 : 1);
     const Row stretch(-1 / d, 0, 1 / d, 0), hoop = Row::Constant(0.5) / r, slope(0, -1 / d, 0, 1 / d);
     const Row volume = stretch + 2 * hoop, shear = slope - hoop;
     const Eigen::Matrix4d k =
@@ -165,7 +166,7 @@ BoundaryBody curved_layer(double thickness, double poisson, bool slides, bool st
   body.mirror = BoundaryBody::Mirror::antisymmetric_z;
   if (stiff)
   {
-    body.scene.materials.push_back(material_of("stiff", 10 * young, poisson));
+    body.scene.materials.push_back(material_of("stiff", 10 * body_young, poisson));
     body.scene.layers.push_back({ "stiff", "skin", "tissue", "stiff", b - c });
   }
   body.scene.constraints = { constraint_at("base",
@@ -175,13 +176,13 @@ BoundaryBody curved_layer(double thickness, double poisson, bool slides, bool st
   // Gravity is so weak that strains are about 1e-4.
   const double gravity = slides ? 0.1 : 1;
   body.scene.gravity = { 0, 0, -gravity };
-  const auto [radial, tangential] = radial_solution(a, b, c, poisson, slides, density * gravity);
+  const auto [radial, tangential] = radial_solution(a, b, c, poisson, slides, body_density * gravity);
   body.exact = [u = radial, w = tangential](const Point& p) -> Point
   {
     const Eigen::Vector3d er = to_vector(p).normalized();
     return to_point(u * er[2] * er + w * (er[2] * er - Eigen::Vector3d::UnitZ()));
   };
-  const double speed = std::sqrt(shear_modulus(young, poisson) / density);
+  const double speed = std::sqrt(shear_modulus(body_young, poisson) / body_density);
   body.period = slides ? 2 * b / speed : 4 * thickness / speed;
   return body;
 }
@@ -205,11 +206,11 @@ BoundaryBody pressed_sphere(double poisson)
   body.exact = [=](const Point& p) -> Point
   {
     const double r = std::hypot(p[0], p[1], p[2]);
-    const double over_radius = pressure * a * a * a / (young * (b * b * b - a * a * a)) *
+    const double over_radius = pressure * a * a * a / (body_young * (b * b * b - a * a * a)) *
                                ((1 - 2 * poisson) + (1 + poisson) * b * b * b / (2 * r * r * r));
     return { { over_radius * p[0], over_radius * p[1], over_radius * p[2] } };
   };
-  body.period = 4 * b / std::sqrt(young / 3 / density);
+  body.period = 4 * b / std::sqrt(body_young / 3 / body_density);
   return body;
 }
 
@@ -220,9 +221,9 @@ BoundaryBody turned_bar(bool round, BarLoad load, const std::string& folder)
   constexpr double curvature = 0.03;  // curvature, or twist per length [1/m]
   const bool bends = load == BarLoad::bending;
   const double poisson = bends ? 0 : 0.3;
-  const Eigen::Matrix3d turn =
-      (Eigen::AngleAxisd(pi / 6, Eigen::Vector3d::UnitY()) * Eigen::AngleAxisd(pi / 6, Eigen::Vector3d::UnitX()))
-          .toRotationMatrix();
+  const Eigen::Matrix3d turn = (Eigen::AngleAxisd(physics::pi / 6, Eigen::Vector3d::UnitY()) *
+                                Eigen::AngleAxisd(physics::pi / 6, Eigen::Vector3d::UnitX()))
+                                   .toRotationMatrix();
   const Surface bone = box_surface("bone", turn, { -15e-3, -15e-3, -8e-3 }, { 15e-3, 15e-3, 0 }, folder);
   Surface bar;
   if (round)
@@ -249,23 +250,23 @@ BoundaryBody turned_bar(bool round, BarLoad load, const std::string& folder)
         bends ? Eigen::Vector3d(0.5 * y[2] * y[2], 0, -y[0] * y[2]) : Eigen::Vector3d(-y[2] * y[1], y[2] * y[0], 0);
     return to_point(curvature * (turn * u));
   };
-  body.end =
-      grid_mesh(8, round ? 24 : 8,
-                [&](double s, double t) -> Point
-                {
-                  const Eigen::Vector3d y =
-                      round ? Eigen::Vector3d(s * half * std::cos(2 * pi * t), s * half * std::sin(2 * pi * t), length)
-                            : Eigen::Vector3d((2 * s - 1) * half, (2 * t - 1) * half, length);
-                  return to_point(turn * y);
-                });
-  const double modulus = bends ? young : shear_modulus(young, poisson);
+  body.end = grid_mesh(8, round ? 24 : 8,
+                       [&](double s, double t) -> Point
+                       {
+                         const Eigen::Vector3d y =
+                             round ? Eigen::Vector3d(s * half * std::cos(2 * physics::pi * t),
+                                                     s * half * std::sin(2 * physics::pi * t), length)
+                                   : Eigen::Vector3d((2 * s - 1) * half, (2 * t - 1) * half, length);
+                         return to_point(turn * y);
+                       });
+  const double modulus = bends ? body_young : shear_modulus(body_young, poisson);
   const auto unit_traction = [=](const Point& p) -> Eigen::Vector3d
   {
     const Eigen::Vector3d y = turn.transpose() * to_vector(p);
     return turn * (bends ? Eigen::Vector3d(0, 0, -y[0]) : Eigen::Vector3d(-y[1], y[0], 0));
   };
   // Tractions act at the middles of the end's triangles. They are scaled so that their moment is exact.
-  const double moment = (round ? pi / 4 : 4.0 / 3) * std::pow(half, 4) * (bends ? 1 : 2);
+  const double moment = (round ? physics::pi / 4 : 4.0 / 3) * std::pow(half, 4) * (bends ? 1 : 2);
   double of_triangles = 0;
   for (const auto& t : body.end.triangles)
   {
@@ -276,8 +277,8 @@ BoundaryBody turned_bar(bool round, BarLoad load, const std::string& folder)
   { return to_point(moment / of_triangles * modulus * curvature * unit_traction(p)); };
   // The period of bending is that of a cantilever's first mode, with the wave number 1.875 / length. Torsion is faster.
   const double slowness = bends ? 0.5 * half : length / 1.875;
-  body.period = bends ? 2 * pi * length * length / (3.516 * slowness * std::sqrt(young / density))
-                      : 4 * length / std::sqrt(modulus / density);
+  body.period = bends ? 2 * physics::pi * length * length / (3.516 * slowness * std::sqrt(body_young / body_density))
+                      : 4 * length / std::sqrt(modulus / body_density);
   return body;
 }
 

@@ -12,7 +12,7 @@ namespace frontalis
 namespace
 {
 
-constexpr double young = 1e5, height = 1, length = 10;  // [Pa], [m], [m]
+constexpr double beam_young = 1e5, beam_height = 1, beam_length = 10;  // [Pa], [m], [m]
 
 using Ratio = std::array<int, 3>;  // proportions of a voxel's edges
 
@@ -25,19 +25,20 @@ struct Deflection
 Deflection deflection(double poisson, int n, HourglassControl form, const Ratio& ratio,
                       Integration integration = Integration::one_point)
 {
-  const double unit = height / n / ratio[2];
-  VoxelBox box{ {}, {}, { neo_hookean(young, poisson) } };
+  const double unit = beam_height / n / ratio[2];
+  VoxelBox box{ {}, {}, { neo_hookean(beam_young, poisson) } };
   for (int axis = 0; axis < 3; ++axis)
   {
     box.spacing[axis] = unit * ratio[axis];
-    box.size[axis] = static_cast<std::int32_t>(std::lround((axis == 0 ? length : height) / box.spacing[axis]));
+    box.size[axis] =
+        static_cast<std::int32_t>(std::lround((axis == 0 ? beam_length : beam_height) / box.spacing[axis]));
   }
   Model model = voxel_model(box);
   model.hourglass = form;
   model.integration = integration;
   hold(model, [](const auto& p) { return p[0] == 0; });
   const LinearStatics statics(model);
-  const auto end = nodes_where(model, [&](const auto& p) { return p[0] > length - 0.1 * unit; });
+  const auto end = nodes_where(model, [&](const auto& p) { return p[0] > beam_length - 0.1 * unit; });
   Vectors weight(model.nodes.size());
   for (const auto& corners : model.voxel_nodes)
     for (const auto node : corners)

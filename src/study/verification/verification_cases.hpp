@@ -26,14 +26,14 @@ inline std::string name_of(HourglassControl form)
 }
 
 /// Wrinkles of a stiff film on a deep soft base, both with Poisson's ratio 0.49, in plane strain.
-struct Wrinkles
+struct FilmWrinkles
 {
   double wavelength = 0;   ///< wavelength divided by the film's thickness
   double compression = 0;  ///< critical compression [%]
 };
 /// Wrinkles by plate theory (Cao & Hutchinson 2012). `contrast`: Young's modulus of the film divided by that of the
 /// base.
-Wrinkles expected_wrinkles(double contrast);
+FilmWrinkles expected_wrinkles(double contrast);
 /// If a base is stretched by `along` in its plane, returns the stretch normal to the plane at which the normal stress
 /// is zero. Poisson's ratio is 0.49, in plane strain.
 double free_stretch(double along);

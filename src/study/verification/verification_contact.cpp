@@ -12,11 +12,11 @@ namespace frontalis
 namespace
 {
 
-constexpr double edge = 1e-3, young = 34e3, density = 1000, gravity = 9.81;
+constexpr double block_edge = 1e-3, block_young = 34e3, block_density = 1000, gravity = 9.81;
 
 Model block(const Voxel& size, double damping, double poisson = 0.49)
 {
-  Model model = voxel_model(size, edge, neo_hookean(young, poisson, density));
+  Model model = voxel_model(size, block_edge, neo_hookean(block_young, poisson, block_density));
   model.damping = damping;
   return model;
 }
@@ -39,7 +39,7 @@ void verify_contact_pressure(const Backend&, Finding& finding)
     Model model = block({ { 5, 4, 4 } }, 3000, poisson);
     prescribe(model, nodes_where(model, [](const auto& p) { return p[2] == 0; }), { { false, false, true } });
     model.bones = { "plate" };
-    model.contacts.push_back(touching_side(model, true, flat_body(4 * edge, 1)));
+    model.contacts.push_back(touching_side(model, true, flat_body(4 * block_edge, 1)));
     model.contacts[0].bone = 0;
     const auto solver = make(model, backend);
     constexpr double way = 0.206e-3;
@@ -47,19 +47,20 @@ void verify_contact_pressure(const Backend&, Finding& finding)
     controls.bone[0].translation[2] = -way;
     for (int i = 0; i < 9; ++i)
       solver->advance(0.02, controls);
-    const double pressure = solver->reactions()[0].force[2] / (20 * edge * edge);
+    const double pressure = solver->reactions()[0].force[2] / (20 * block_edge * block_edge);
     const Vectors u = displacements(*solver);
     double least = 1, most = 0;
-    for (const auto node : nodes_where(model, [](const auto& p) { return p[2] > 3.5 * edge; }))
+    for (const auto node : nodes_where(model, [](const auto& p) { return p[2] > 3.5 * block_edge; }))
     {
       least = std::min(least, u[node][2] + way);
       most = std::max(most, u[node][2] + way);
     }
     const std::string of = ", ν = " + readable(poisson) + ", " + backend;
-    finding.checks.relative("pressure over E" + of, "1", 0.05, pressure / young, 0.1);
-    finding.checks.absolute("largest depth" + of, "% of a voxel", 0, 100 * most / edge, 2);
+    finding.checks.relative("pressure over E" + of, "1", 0.05, pressure / block_young, 0.1);
+    finding.checks.absolute("largest depth" + of, "% of a voxel", 0, 100 * most / block_edge, 2);
     finding.checks.absolute("unevenness of depth" + of, "%", 0, 100 * (most - least) / most, 5);
-    finding.checks.relative("mean depth" + of, "um", 1e6 * pressure * edge / (physics::contact_stiffness * young),
+    finding.checks.relative("mean depth" + of, "um",
+                            1e6 * pressure * block_edge / (physics::contact_stiffness * block_young),
                             1e6 * 0.5 * (most + least), 0.03);
   };
   on_every_backend(finding,

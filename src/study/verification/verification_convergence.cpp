@@ -68,13 +68,13 @@ double cook(double h, HourglassControl form, double fill_min, bool whole)
       nodes_where(model, [=](const auto& p) { return p[0] > 48 - h / 2 && std::abs(p[1] - 52) < h / 2; }))[1];
 }
 
-struct Surface
+struct SphereSurface
 {
   double mean = 0, spread = 0;  // mean and standard deviation of the radial displacement, divided by Lame's solution
 };
 
 // Inner and outer surface of an eighth of a hollow sphere, with radii of 1 cm and 2 cm, under a small pressure inside.
-std::array<Surface, 2> hollow_sphere(int n, HourglassControl form, const Backend& backend)
+std::array<SphereSurface, 2> hollow_sphere(int n, HourglassControl form, const Backend& backend)
 {
   const double a = 1e-2, b = 2e-2, young = 1e4, poisson = 0.45, pressure = 20, pi = std::acos(-1.0);
   VoxelBox box{ { { n, n, n } }, { { b / n, b / n, b / n } }, { neo_hookean(young, poisson) } };
@@ -113,7 +113,7 @@ std::array<Surface, 2> hollow_sphere(int n, HourglassControl form, const Backend
     model.loads.back().value[0] = side == 0 ? pressure : -pressure;
     find_equilibrium(model, relax).solver->skin(skin[side]);
   }
-  std::array<Surface, 2> surfaces;
+  std::array<SphereSurface, 2> surfaces;
   const std::size_t half = model.skin.vertices.size() / 2;
   for (const std::size_t which : { 0, 1 })
   {

@@ -1,5 +1,6 @@
 // Cardiac mechanics benchmark, problems 1 and 3: Land et al. 2015, Proc. R. Soc. A 471:20150641.
 
+#include "frontalis/physics/number.hpp"
 #include "frontalis/physics/materials/all.hpp"
 #include "study/verification/verification_cases.hpp"
 
@@ -12,8 +13,6 @@ namespace frontalis
 {
 namespace
 {
-
-const double pi = std::acos(-1.0);
 
 Material heart(double kappa)
 {
@@ -46,7 +45,7 @@ std::array<float, 3> wall_fibre(double x, double y, double z)
   const double t = std::clamp(zero_between(-0.5, 1.5, inside, 50), 0.0, 1.0);
   const double shorter = 7e-3 + 3e-3 * t, longer = 17e-3 + 3e-3 * t;
   const double u = -std::atan2(radius / shorter, z / longer), v = std::atan2(-y, -x);
-  const double angle = (90 - 180 * t) * pi / 180;
+  const double angle = (90 - 180 * t) * physics::pi / 180;
   const double along[3] = { shorter * std::cos(u) * std::cos(v), shorter * std::cos(u) * std::sin(v),
                             -longer * std::sin(u) };
   const double around[3] = { std::sin(v), -std::cos(v), 0 };
@@ -93,7 +92,7 @@ Apex ellipsoid(double h, double kappa, const Backend& backend)
                grid_mesh(rows, 2 * rows,
                          [&](double s, double t) -> Point
                          {
-                           const double u = pi - s * (pi - edge), v = 2 * pi * t;
+                           const double u = physics::pi - s * (physics::pi - edge), v = 2 * physics::pi * t;
                            return { { centre[0] + 7e-3 * std::sin(u) * std::cos(v),
                                       centre[1] + 7e-3 * std::sin(u) * std::sin(v), centre[2] + 17e-3 * std::cos(u) } };
                          }));

@@ -12,13 +12,13 @@ namespace frontalis
 namespace
 {
 
-constexpr double young = 34e3, poisson = 0.49, edge = 1e-3;  // young [Pa], edge [m]
+constexpr double voxel_young = 34e3, voxel_poisson = 0.49, voxel_edge = 1e-3;  // young [Pa], edge [m]
 
 using Gradient = std::array<double, 9>;  // 3 x 3, row-major
 
 Model small_block(const Material& material, std::int32_t n, HourglassControl hourglass = HourglassControl::scalar)
 {
-  Model model = voxel_model({ { n, n, n } }, edge, material);
+  Model model = voxel_model({ { n, n, n } }, voxel_edge, material);
   model.hourglass = hourglass;
   return model;
 }
@@ -46,9 +46,9 @@ Gradient piola_stress(const Model& model, Solver& solver)
   Gradient P{};
   for (int j = 0; j < 3; ++j)
   {
-    const double area = model.size[(j + 1) % 3] * model.size[(j + 2) % 3] * edge * edge;
-    const auto force =
-        internal_force(solver, nodes_where(model, [&](const auto& p) { return p[j] > (model.size[j] - 0.5) * edge; }));
+    const double area = model.size[(j + 1) % 3] * model.size[(j + 2) % 3] * voxel_edge * voxel_edge;
+    const auto force = internal_force(
+        solver, nodes_where(model, [&](const auto& p) { return p[j] > (model.size[j] - 0.5) * voxel_edge; }));
     for (int i = 0; i < 3; ++i)
       P[3 * i + j] = force[i] / area;
   }
@@ -57,14 +57,14 @@ Gradient piola_stress(const Model& model, Solver& solver)
 
 std::vector<std::pair<std::string, Material>> every_law()
 {
-  std::vector<std::pair<std::string, Material>> laws{ { "neo-Hookean", neo_hookean(young, poisson) } };
+  std::vector<std::pair<std::string, Material>> laws{ { "neo-Hookean", neo_hookean(voxel_young, voxel_poisson) } };
   for (const Law law : physics::every_law)
     if (law != Law::neo_hookean)
     {
       Material material = laws.front().second;
       material.law = law;
       material.parameters = physics::example_of(law);
-      material.parameters[physics::bulk_modulus_slot] = bulk_modulus(young, poisson);
+      material.parameters[physics::bulk_modulus_slot] = bulk_modulus(voxel_young, voxel_poisson);
       laws.emplace_back(physics::description_of(law).title, material);
     }
   return laws;
@@ -73,10 +73,10 @@ std::vector<std::pair<std::string, Material>> every_law()
 // Equilibrium stretch along x of a free bar of 4 x 2 x 2 voxels.
 double contracted(const Material& material, const Muscle& muscle, float activation, const Backend& backend)
 {
-  Model model = voxel_model({ { 4, 2, 2 } }, edge, material);
+  Model model = voxel_model({ { 4, 2, 2 } }, voxel_edge, material);
   add_muscle(model, muscle, along_x);
   hold_mirror_planes(model);
-  const auto end = nodes_where(model, [](const auto& p) { return p[0] > 3.5 * edge; });
+  const auto end = nodes_where(model, [](const auto& p) { return p[0] > 3.5 * voxel_edge; });
   const double period = 16e-3 / std::sqrt(3 * material.parameters[0] / material.density);
   const RestState rest = find_equilibrium(model, { backend, period, 1e-5, activation });
   return 1 + mean_displacement(rest.displacements, end)[0] / 4e-3;
@@ -97,11 +97,11 @@ void verify_rigid_motion(const Backend& other, Finding& finding)
   for (const auto& [backend, bound] : { std::pair<Backend, double>{ "reference", 1e-12 }, { other, 2e-5 } })
     for (const auto form : hourglass_forms)
     {
-      const Model model = small_block(neo_hookean(young, poisson), 3, form);
+      const Model model = small_block(neo_hookean(voxel_young, voxel_poisson), 3, form);
       const Vectors forces =
           internal_forces(*solver_of(model, backend), affine_displacements(model, R, { { 2e-3, 0, 0 } }));
       finding.checks.absolute("force over E h², " + backend + ", " + name_of(form), "1", 0,
-                              largest(forces) / (young * edge * edge), bound);
+                              largest(forces) / (voxel_young * voxel_edge * voxel_edge), bound);
     }
 }
 
@@ -114,11 +114,12 @@ void verify_affine_motion(const Backend& other, Finding& finding)
     for (int j = 0; j < 3; ++j)
       mode[i][physics::gradient_mode(j)] = F[3 * i + j] - (i == j);
   const auto k = physics::kinematics(mode[0], mode[1], mode[2], one);
-  const auto law =
-      physics::stress(physics::NeoHookean<double>{ shear_modulus(young, poisson), bulk_modulus(young, poisson) }, k);
+  const auto law = physics::stress(physics::NeoHookean<double>{ shear_modulus(voxel_young, voxel_poisson),
+                                                                bulk_modulus(voxel_young, voxel_poisson) },
+                                   k);
   for (const auto& [backend, bound] : { std::pair<Backend, double>{ "reference", 1e-11 }, { other, 2e-5 } })
   {
-    const Model model = small_block(neo_hookean(young, poisson), 4, HourglassControl::assumed_strain);
+    const Model model = small_block(neo_hookean(voxel_young, voxel_poisson), 4, HourglassControl::assumed_strain);
     const auto solver = solver_of(model, backend);
     const Vectors forces = internal_forces(*solver, affine_displacements(model, F));
     double inside = 0, error = 0;
@@ -131,15 +132,16 @@ void verify_affine_motion(const Backend& other, Finding& finding)
       for (int j = 0; j < 3; ++j)
         error = std::max(error,
                          std::abs(P[3 * i + j] - law.on_gradient * k.F.a[i][j] - law.on_cofactor * k.cofactor.a[i][j]));
-    finding.checks.absolute("force inside over E h², " + backend, "1", 0, inside / (young * edge * edge), bound);
-    finding.checks.absolute("error of stress over E, " + backend, "1", 0, error / young, bound);
+    finding.checks.absolute("force inside over E h², " + backend, "1", 0,
+                            inside / (voxel_young * voxel_edge * voxel_edge), bound);
+    finding.checks.absolute("error of stress over E, " + backend, "1", 0, error / voxel_young, bound);
   }
 }
 
 void verify_energy_gradient(const Backend& other, Finding& finding)
 {
   std::mt19937 random(3);
-  std::uniform_real_distribution<double> value(-0.3 * edge, 0.3 * edge);
+  std::uniform_real_distribution<double> value(-0.3 * voxel_edge, 0.3 * voxel_edge);
   for (const auto& [law, material] : every_law())
     for (const auto form : hourglass_forms)
     {
@@ -187,14 +189,15 @@ void verify_uniaxial_stretch(const Backend& backend, Finding& finding)
   plot.curves = { { "closed form", {}, {}, Plot::Style::line }, { "solver", {}, {}, Plot::Style::points } };
   for (const auto& row : expected)
   {
-    Model model = small_block(neo_hookean(young, poisson), 2);
-    const double length = 2 * edge;
+    Model model = small_block(neo_hookean(voxel_young, voxel_poisson), 2);
+    const double length = 2 * voxel_edge;
     hold_mirror_planes(model);
-    const auto end = nodes_where(model, [&](const auto& p) { return p[0] > 1.5 * edge; });
-    const auto side = nodes_where(model, [&](const auto& p) { return p[1] > 1.5 * edge; });
+    const auto end = nodes_where(model, [&](const auto& p) { return p[0] > 1.5 * voxel_edge; });
+    const auto side = nodes_where(model, [&](const auto& p) { return p[1] > 1.5 * voxel_edge; });
     prescribe(model, end, { { true, false, false } }, { { (row[0] - 1) * length, 0, 0 } });
     const RestState rest = find_equilibrium(model, { backend, 3e-3, 1e-6 });
-    const double stress = internal_force(*rest.solver, end)[0] / (length * length) / shear_modulus(young, poisson);
+    const double stress =
+        internal_force(*rest.solver, end)[0] / (length * length) / shear_modulus(voxel_young, voxel_poisson);
     const double lateral = 1 + mean_displacement(rest.displacements, side)[1] / length;
     const std::string at = " at stretch " + readable(row[0]);
     finding.checks.relative("P11/μ" + at, "1", row[1], stress, 2e-4);
@@ -210,7 +213,7 @@ void verify_simple_shear(const Backend& backend, Finding& finding)
 {
   for (const double gamma : { 0.2, 0.8 })
   {
-    const Model model = small_block(neo_hookean(young, poisson), 2);
+    const Model model = small_block(neo_hookean(voxel_young, voxel_poisson), 2);
     const auto solver = solver_of(model, backend);
     const Gradient F{ { 1, gamma, 0, 0, 1, 0, 0, 0, 1 } };
     solver->set_displacements(affine_displacements(model, F));
@@ -219,7 +222,7 @@ void verify_simple_shear(const Backend& backend, Finding& finding)
     const auto sigma = [&](int i, int j)
     {
       return (P[3 * i] * F[3 * j] + P[3 * i + 1] * F[3 * j + 1] + P[3 * i + 2] * F[3 * j + 2]) /
-             shear_modulus(young, poisson);
+             shear_modulus(voxel_young, voxel_poisson);
     };
     const std::string at = " at γ = " + readable(gamma);
     const double square = gamma * gamma;

@@ -14,10 +14,10 @@ namespace frontalis
 namespace
 {
 
-constexpr double edge = 1e-3, young = 34e3, density = 1000, degree = 3.14159265358979 / 180;
+constexpr double bodies_edge = 1e-3, bodies_young = 34e3, bodies_density = 1000, bodies_degree = 3.14159265358979 / 180;
 
 // Lengths in voxels: sides and height of a block, and the gap between the two blocks.
-constexpr double length = 18, width = 4, height = 6, gap = 3;
+constexpr double bodies_length = 18, bodies_width = 4, bodies_height = 6, bodies_gap = 3;
 
 // Two blocks, one above the other, in a grid that is turned about y and shifted along x and z. With `cut`, partly
 // filled voxels have their stress at the tissue's centroid. Without it, they have their stress at the voxel's centre,
@@ -26,18 +26,21 @@ class Blocks
 {
 public:
   Blocks(double degrees, double shift, double poisson, bool cut)
-      : cosine_(std::cos(degrees * degree)), sine_(std::sin(degrees * degree)), shift_(shift * edge)
+      : cosine_(std::cos(degrees * bodies_degree)),
+        sine_(std::sin(degrees * bodies_degree)),
+        shift_(shift * bodies_edge)
   {
-    const double top = 2 * height + gap;
+    const double top = 2 * bodies_height + bodies_gap;
     const auto voxels = [&](double way) { return static_cast<std::int32_t>(std::ceil(way + shift - 1e-9)); };
-    VoxelBox box{ { { voxels(cosine_ * length + sine_ * top), static_cast<std::int32_t>(width),
-                      voxels(sine_ * length + cosine_ * top) } },
-                  { { edge, edge, edge } },
-                  { neo_hookean(young, poisson, density) } };
+    VoxelBox box{ { { voxels(cosine_ * bodies_length + sine_ * top), static_cast<std::int32_t>(bodies_width),
+                      voxels(sine_ * bodies_length + cosine_ * top) } },
+                  { { bodies_edge, bodies_edge, bodies_edge } },
+                  { neo_hookean(bodies_young, poisson, bodies_density) } };
     const auto inside = [&](const Point& p)
     {
       const Point q = in_blocks(p);
-      return q[0] > 0 && q[0] < length && q[2] > 0 && q[2] < top && (q[2] < height || q[2] > height + gap);
+      return q[0] > 0 && q[0] < bodies_length && q[2] > 0 && q[2] < top &&
+             (q[2] < bodies_height || q[2] > bodies_height + bodies_gap);
     };
     constexpr int samples = 16;  // number of samples along each edge of a voxel
     box.fill = cut ? sampled_fill(box.spacing, inside, samples, 0.02) : sampled_fill(box.spacing, inside);
@@ -48,7 +51,7 @@ public:
     {
       // The outer side of each block slides on a plane; the upper plane moves with a bone.
       const double end = upper ? top : 0, normal = 1000;
-      const Point centre = in_grid({ { 0.5 * length, 0.5 * width, end + normal / edge } });
+      const Point centre = in_grid({ { 0.5 * bodies_length, 0.5 * bodies_width, end + normal / bodies_edge } });
       const auto surface =
           slide_on(model, upper ? "upper" : "lower", sphere_field(centre, normal),
                    nodes_where(model, [&](const Point& p) { return std::abs(in_blocks(p)[2] - end) < 0.5; }));
@@ -57,24 +60,25 @@ public:
     model.bones = { "upper" };
     const auto side = [&](double z, bool faces_up)
     {
-      return grid_mesh(static_cast<int>(2 * length), static_cast<int>(2 * width),
+      return grid_mesh(static_cast<int>(2 * bodies_length), static_cast<int>(2 * bodies_width),
                        [&](double s, double t) {
-                         return in_grid({ { length * (faces_up ? s : 1 - s), width * t, z } });
+                         return in_grid({ { bodies_length * (faces_up ? s : 1 - s), bodies_width * t, z } });
                        });
     };
-    let_touch(model, { side(height, true), side(height + gap, false) }, 0);
+    let_touch(model, { side(bodies_height, true), side(bodies_height + bodies_gap, false) }, 0);
   }
 
   /// Transforms coordinates of the blocks [voxels] to coordinates of the grid [m], and back.
   Point in_grid(const Point& q) const
   {
-    const double x = edge * q[0], z = edge * q[2];
-    return { { cosine_ * x + sine_ * z + shift_, edge * q[1], sine_ * (edge * length - x) + cosine_ * z + shift_ } };
+    const double x = bodies_edge * q[0], z = bodies_edge * q[2];
+    return { { cosine_ * x + sine_ * z + shift_, bodies_edge * q[1],
+               sine_ * (bodies_edge * bodies_length - x) + cosine_ * z + shift_ } };
   }
   Point in_blocks(const Point& p) const
   {
-    const double x = p[0] - shift_, z = p[2] - shift_ - sine_ * edge * length;
-    return { { (cosine_ * x - sine_ * z) / edge, p[1] / edge, (sine_ * x + cosine_ * z) / edge } };
+    const double x = p[0] - shift_, z = p[2] - shift_ - sine_ * bodies_edge * bodies_length;
+    return { { (cosine_ * x - sine_ * z) / bodies_edge, p[1] / bodies_edge, (sine_ * x + cosine_ * z) / bodies_edge } };
   }
   /// Component [m] of a vector normal to the surfaces.
   double across(const Point& v) const { return sine_ * v[0] + cosine_ * v[2]; }
@@ -107,7 +111,7 @@ void press(const std::string& place, double degrees, double shift, double poisso
   Blocks blocks(degrees, shift, poisson, cut);
   blocks.model.damping = 3000;
   const auto solver = make(blocks.model, backend);
-  constexpr double strain = 0.052, way = (gap + 2 * height * strain) * edge;
+  constexpr double strain = 0.052, way = (bodies_gap + 2 * bodies_height * strain) * bodies_edge;
   Controls controls = solver->controls();
   controls.bone[0].translation = { { -way * blocks.across({ { 1, 0, 0 } }), 0,
                                      -way * blocks.across({ { 0, 0, 1 } }) } };
@@ -115,32 +119,32 @@ void press(const std::string& place, double degrees, double shift, double poisso
   solver->advance(0.06, controls);
   const Vectors u = displacements(*solver);
   // The surroundings of the free sides, which are staircases, are left out.
-  constexpr double margin = height;
+  constexpr double margin = bodies_height;
   double least = 1, most = 0, sum = 0, squeezed = 0;
   int count = 0;
-  for (double x = margin; x <= length - margin; x += 0.5)
-    for (double y = 0.5; y <= width - 0.5; y += 0.5)
+  for (double x = margin; x <= bodies_length - margin; x += 0.5)
+    for (double y = 0.5; y <= bodies_width - 0.5; y += 0.5)
     {
-      const double lower = across_at(blocks, u, { { x, y, height } });
-      const double upper = across_at(blocks, u, { { x, y, height + gap } });
-      const double overlap = lower - upper - gap * edge;
+      const double lower = across_at(blocks, u, { { x, y, bodies_height } });
+      const double upper = across_at(blocks, u, { { x, y, bodies_height + bodies_gap } });
+      const double overlap = lower - upper - bodies_gap * bodies_edge;
       least = std::min(least, overlap);
       most = std::max(most, overlap);
       sum += overlap;
-      squeezed += across_at(blocks, u, { { x, y, 1.5 } }) - across_at(blocks, u, { { x, y, height - 1.5 } });
+      squeezed += across_at(blocks, u, { { x, y, 1.5 } }) - across_at(blocks, u, { { x, y, bodies_height - 1.5 } });
       ++count;
     }
   // Neo-Hookean tissue stiffens under compression: pressure / E = strain (1 + strain), to second order.
-  const double found = squeezed / (count * (height - 3) * edge), pressure = found * (1 + found);
+  const double found = squeezed / (count * (bodies_height - 3) * bodies_edge), pressure = found * (1 + found);
   const std::string of = ", " + place + ", ν = " + readable(poisson) + ", " + backend;
   finding.checks.relative("pressure over E" + of, "1", 0.05, pressure, 0.1);
-  finding.checks.absolute("largest overlap" + of, "% of a voxel", 0, 100 * most / edge, 2);
+  finding.checks.absolute("largest overlap" + of, "% of a voxel", 0, 100 * most / bodies_edge, 2);
   const double uneven = 100 * (most - least) * count / sum;
   if (degrees == 0 || (cut && shift == 0))
     finding.checks.absolute("unevenness of overlap" + of, "%", 0, uneven, 5);
   else
     finding.checks.absolute("unevenness of overlap" + of, "%", 0, uneven, std::nan(""));
-  finding.checks.relative("mean overlap" + of, "um", 1e6 * pressure * edge / physics::contact_stiffness,
+  finding.checks.relative("mean overlap" + of, "um", 1e6 * pressure * bodies_edge / physics::contact_stiffness,
                           1e6 * sum / count, 0.03);
 }
 
@@ -156,9 +160,9 @@ void collide(const Backend& backend, Finding& finding)
   const auto solver = make(model, backend, true);
   Vectors u(model.nodes.size()), velocity(model.nodes.size());
   for (std::size_t n = 0; n < u.size(); ++n)
-    if (const Point p = rest_position(model, n); p[2] > (height + 0.5 * gap) * edge)
+    if (const Point p = rest_position(model, n); p[2] > (bodies_height + 0.5 * bodies_gap) * bodies_edge)
     {
-      u[n][2] = (0.05 - gap) * edge;
+      u[n][2] = (0.05 - bodies_gap) * bodies_edge;
       velocity[n] = { { 0.1 + 10 * p[1], -0.05, -0.3 - 10 * p[0] } };
     }
   solver->set_displacements(u);

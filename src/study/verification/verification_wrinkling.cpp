@@ -13,7 +13,7 @@ namespace frontalis
 namespace
 {
 
-constexpr double poisson = 0.49, base_young = 1e4;
+constexpr double film_poisson = 0.49, base_young = 1e4;
 
 // A film on a base, as planes of voxels.
 struct Layers
@@ -29,9 +29,9 @@ double critical_compression(const Layers& layers, int half)
 {
   VoxelBox box{ { { half, 1, layers.base + static_cast<int>(layers.film.size()) } },
                 layers.spacing,
-                { neo_hookean(base_young, poisson) } };
+                { neo_hookean(base_young, film_poisson) } };
   for (const double contrast : layers.film)
-    box.materials.push_back(neo_hookean(contrast * base_young, poisson));
+    box.materials.push_back(neo_hookean(contrast * base_young, film_poisson));
   box.material = [&](const auto& voxel) { return std::max(0, voxel[2] - layers.base + 1); };
   Model model = voxel_model(box);
   model.hourglass = HourglassControl::assumed_strain;
@@ -50,8 +50,8 @@ double critical_compression(const Layers& layers, int half)
 
 // Finds the wrinkles that need the least compression, with half wavelengths from `first` to `last` voxels. `curve`
 // receives the critical compression [%] over the wavelength in units of `unit` voxels.
-Wrinkles find_wrinkles(const std::function<Layers(int)>& layers, int first, int last, int step, double unit,
-                       Plot::Curve& curve)
+FilmWrinkles find_wrinkles(const std::function<Layers(int)>& layers, int first, int last, int step, double unit,
+                           Plot::Curve& curve)
 {
   for (int half = first; half <= last; half += step)
     curve.add(2.0 * half / unit, 100 * critical_compression(layers(half), half));
@@ -65,7 +65,7 @@ Wrinkles find_wrinkles(const std::function<Layers(int)>& layers, int first, int 
 }
 
 // Wrinkles of a film of `film` voxels on a deep base; wavelengths in units of the film's thickness.
-Wrinkles film_wrinkles(double contrast, int film, Plot::Curve& curve)
+FilmWrinkles film_wrinkles(double contrast, int film, Plot::Curve& curve)
 {
   const int expected = static_cast<int>(std::lround(expected_wrinkles(contrast).wavelength / 2));
   const auto layers = [&](int half) {
@@ -77,7 +77,7 @@ Wrinkles film_wrinkles(double contrast, int film, Plot::Curve& curve)
 // Wrinkles of skin on hypodermis of a depth [m] over bone, for wavelengths around `expected` [m]. Corneum (48 MPa,
 // 0.02 mm) and dermis (0.0814 MPa, 1.8 mm) are replaced by one plate of equal stretching and bending stiffness, so that
 // the corneum cannot wrinkle alone. The resulting wavelength [mm] is measured after the compression.
-Wrinkles skin_wrinkles(double depth, double expected)
+FilmWrinkles skin_wrinkles(double depth, double expected)
 {
   constexpr double young[2] = { 48e6, 81.4e3 }, thickness[2] = { 0.02e-3, 1.8e-3 }, hypodermis = 34e3;
   constexpr double middle_of[2] = { thickness[1] + 0.5 * thickness[0], 0.5 * thickness[1] };
@@ -96,7 +96,7 @@ Wrinkles skin_wrinkles(double depth, double expected)
                        std::vector<double>(planes, stretching / plate / hypodermis) };
   const int middle = static_cast<int>(std::lround(expected / (2 * along)));
   Plot::Curve curve;
-  Wrinkles found =
+  FilmWrinkles found =
       find_wrinkles([&](int) { return Layers(layers); }, std::max(3, middle - 5), middle + 5, 1, 1e-3 / along, curve);
   found.wavelength *= 1 - 0.01 * found.compression;
   return found;
@@ -104,14 +104,14 @@ Wrinkles skin_wrinkles(double depth, double expected)
 
 }  // namespace
 
-Wrinkles expected_wrinkles(double contrast)
+FilmWrinkles expected_wrinkles(double contrast)
 {
   return { 2 * std::acos(-1.0) * std::cbrt(contrast / 3), 25 * std::pow(3 / contrast, 2.0 / 3) };
 }
 
 double free_stretch(double along)
 {
-  const double mu = shear_modulus(1, poisson), kappa = bulk_modulus(1, poisson);
+  const double mu = shear_modulus(1, film_poisson), kappa = bulk_modulus(1, film_poisson);
   return zero_between(0.5, 2,
                       [=](double z)
                       {
@@ -131,11 +131,11 @@ void verify_wrinkling(const Backend&, Finding& finding)
     const double kh = 2 * pi / wavelength;
     plot.curves[0].add(wavelength, 100 * (kh * kh / 12 + 1 / (2 * contrast * kh)));
   }
-  const Wrinkles expected = expected_wrinkles(contrast);
+  const FilmWrinkles expected = expected_wrinkles(contrast);
   for (const int film : { 1, 2 })
   {
     Plot::Curve curve{ film == 1 ? "film of 1 voxel" : "film of 2 voxels", {}, {}, Plot::Style::points };
-    const Wrinkles found = film_wrinkles(contrast, film, curve);
+    const FilmWrinkles found = film_wrinkles(contrast, film, curve);
     finding.checks.relative("wavelength over h, " + curve.name, "1", expected.wavelength, found.wavelength, 0.1);
     finding.checks.relative("critical compression, " + curve.name, "%", expected.compression, found.compression, 0.1);
     plot.curves.push_back(curve);
@@ -143,7 +143,7 @@ void verify_wrinkling(const Backend&, Finding& finding)
   // The film is corneum of 48 MPa and 0.02 mm on dermis of 0.0814 MPa, in voxels of 0.02 mm.
   constexpr double skin_contrast = 48 / 0.0814, thickness = 0.02;
   Plot::Curve skin;
-  const Wrinkles of_skin = film_wrinkles(skin_contrast, 1, skin);
+  const FilmWrinkles of_skin = film_wrinkles(skin_contrast, 1, skin);
   finding.checks.relative("corneum on dermis: wavelength", "mm", 0.731, thickness * of_skin.wavelength, 0.1);
   finding.checks.relative("corneum on dermis: critical compression", "%", 0.74, of_skin.compression, 0.1);
   finding.plots.emplace_back("wrinkling", plot);
@@ -155,7 +155,7 @@ void verify_wrinkling(const Backend&, Finding& finding)
                                    { 2, 9.04, 11.61, 8.1, 13 } };
   for (const auto& plate : plates)
   {
-    const Wrinkles found = skin_wrinkles(1e-3 * plate[0], 1e-3 * plate[1]);
+    const FilmWrinkles found = skin_wrinkles(1e-3 * plate[0], 1e-3 * plate[1]);
     const std::string name = "skin on " + readable(plate[0]) + " mm of hypodermis: ";
     const double unbounded = std::nan("");
     finding.checks.relative(name + "wavelength", "mm", plate[1], found.wavelength, 0.1);
