@@ -21,7 +21,8 @@ class Robot(unittest.TestCase):
         self.joints, self.forces = {}, []
         rospy.Subscriber("joint_states", JointState, self.take_joints)
         rospy.Subscriber("/face/wrench/anchor_outer_left", WrenchStamped, self.take_wrench)
-        self.command = rospy.Publisher("/robot_controller/command", JointTrajectory, queue_size=1)
+        # A queue of one would drop the first of two messages in a row if the machine is slow.
+        self.command = rospy.Publisher("/robot_controller/command", JointTrajectory, queue_size=10)
         self.face.wait_until_ready()
         wait(self.command.get_num_connections, "the controller")
 

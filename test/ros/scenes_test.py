@@ -138,6 +138,9 @@ class Scenes(unittest.TestCase):
     def test_6_cost_is_in_the_diagnostics(self):
         wait(lambda: float(self.face.diagnostic("wall time per step [us]") or 0) > 0, "the time per step")
         wait(lambda: float(self.face.diagnostic("memory of the solver [MB]") or 0) > 0, "the memory")
+        # the solver's own words, which name the device and how it is used (test/solver/backend_test.cpp)
+        self.assertTrue(self.face.diagnostic("backend"))
+        self.assertEqual(self.face.diagnostic("backend"), self.face.state.backend)
 
 
 if __name__ == "__main__":

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <regex>
+#include <string>
 
 using namespace frontalis;
 
@@ -54,4 +56,18 @@ TEST(Fallback, FromTheGpuIsToldOnce)
   EXPECT_EQ(output.find("warning: backend cpu is used (backend cuda: "), 0u) << output;
   EXPECT_EQ(std::count(output.begin(), output.end(), '\n'), 1) << output;
   EXPECT_NE(second->description().find("backend cuda: "), std::string::npos) << second->description();
+}
+
+// Diagnostics show these words. On a GPU they name the device and how it is cut into patches or strips.
+TEST(Description, NamesTheDevice)
+{
+  const auto model = std::make_shared<const Model>(test::block_model({}));
+  for (const Backend& backend : available_backends())
+  {
+    const std::string words = make_solver(model, { backend, 1 })->description();
+    const std::string device = backend == "cuda"  ? "cuda \\(float, .+, [0-9]+ (patches|strips, [0-9]+ % filled)\\)"
+                               : backend == "cpu" ? "cpu \\((float|double), .+, 1 thread\\)"
+                                                  : "reference.*";
+    EXPECT_TRUE(std::regex_match(words, std::regex(device))) << words;
+  }
 }

@@ -20,10 +20,10 @@ struct BodyFrame
 /// Motions and reactions of touched_bodies(model) in the latest step, in their order; empty if the backend computes no
 /// contact.
 std::vector<BodyFrame> bodies_in_face_frame(const Solver& solver, const Model& model);
-/// Motions and reactions of the model's bones, in their order. With `forces`, the reaction of a bone is the elastic and
-/// fibre force of the tissue whose nodes the bone holds, plus that of the tissue that touches its bodies. Inertia,
-/// viscosity and shells of held tissue, sliding nodes, and nodes attached at true boundaries are not counted. Without
-/// `forces` it is 0.
+/// Motions and reactions of the model's bones, in their order. With `forces`, the reaction of a bone is the force of
+/// the tissue whose nodes the bone holds, of the tissue that slides on its surfaces and of the tissue that touches its
+/// bodies; without, it is 0. Held and sliding nodes count by their elastic, fibre and contact forces and, on a CPU,
+/// those of shells; their inertia, viscosity and weight do not count.
 std::vector<BodyFrame> bones_in_face_frame(Solver& solver, const Model& model, bool forces);
 
 }  // namespace frontalis

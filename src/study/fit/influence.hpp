@@ -18,7 +18,7 @@ namespace frontalis
 
 // Vectors of places have x, y and z of each landmark of the model, in this order, in the face frame [m].
 
-/// The simulations of a fit, each of which starts at rest.
+/// The simulations of a fit.
 class ForwardRuns
 {
 public:
@@ -26,9 +26,11 @@ public:
 
   /// Names the stage of the fit to which the next simulations belong.
   void announce(const std::string& stage, double done);
-  /// Places of the landmarks in equilibrium. Throws Error if no equilibrium is found.
-  Eigen::VectorXd settle(const std::map<std::string, double>& values);
-  /// Places of the landmarks at each of the given times, under controls that change linearly between knots.
+  /// Places of the landmarks in equilibrium. The face starts at rest, or else where the simulation before has left it.
+  /// Throws Error if no equilibrium is found.
+  Eigen::VectorXd settle(const std::map<std::string, double>& values, bool from_rest = true);
+  /// Places of the landmarks at each of the given times, under controls that change linearly between knots. The face
+  /// starts at rest.
   std::vector<Eigen::VectorXd> play(const ControlCurve& curve, const std::vector<double>& times);
 
   /// The bones, and the forces of the tissue on them.
@@ -37,7 +39,7 @@ public:
   const Model& model() const { return *model_; }
 
 private:
-  SkinState skin();  // present skin, in the face frame
+  Eigen::VectorXd places();  // present places of the landmarks
 
   std::shared_ptr<const Model> model_;
   std::function<void(const std::string&, double)> watch_;
