@@ -6,7 +6,6 @@
 #include <boost/make_shared.hpp>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <utility>
 
@@ -33,10 +32,9 @@ void FacePublisher::Topic<Message>::publish(const std::string& frame, const ros:
 {
   if (publisher.getNumSubscribers() == 0)
     return;
+  // Boost reads the count with acquire order: what a former subscriber read is over before the message is filled again.
   if (!message || message.use_count() > 1)
     message = boost::make_shared<Message>();
-  else
-    std::atomic_thread_fence(std::memory_order_acquire);
   message->header.frame_id = frame;
   message->header.stamp = stamp;
   fill(*message);

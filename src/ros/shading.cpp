@@ -44,7 +44,8 @@ std::array<float, 3> false_colour(float value)
                                                   { { 0.10f, 0.52f, 0.46f } },
                                                   { { 0.85f, 0.74f, 0.16f } },
                                                   { { 0.75f, 0.10f, 0.07f } } } };
-  const float at = 3 * std::clamp(value, 0.0f, 1.0f);
+  // This order of the arguments turns a value that is no number into 0: such a value has no knot below it.
+  const float at = 3 * std::min(1.0f, std::max(0.0f, value));
   const auto knot = std::min<std::size_t>(2, static_cast<std::size_t>(at));
   const float share = at - static_cast<float>(knot);
   Vector out{};

@@ -336,6 +336,13 @@ TEST(SkinMuscles, MixesTheActivationsOfTheMusclesBelow)
   EXPECT_EQ(found[2], 0) << "a vertex on the far border has no voxel below it";
 }
 
+TEST(Shading, ScaleEndsAtBothEndsAndShowsWhatIsNoNumberAsZero)
+{
+  EXPECT_EQ(false_colour(-3), false_colour(0));
+  EXPECT_EQ(false_colour(3), false_colour(1));
+  EXPECT_EQ(false_colour(std::numeric_limits<float>::quiet_NaN()), false_colour(0));
+}
+
 TEST(Shading, LightComesFromAboveAndHollowsAreDarker)
 {
   // a sheet that faces +x, with a dent or a bump in its middle

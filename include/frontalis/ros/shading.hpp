@@ -11,7 +11,8 @@
 namespace frontalis
 {
 
-/// A linear colour for a number: from dark blue at 0 over green and yellow to red at 1 and above.
+/// A linear colour for a number: from dark blue at 0 over green and yellow to red at 1 and above. What is not a number
+/// is dark blue too.
 std::array<float, 3> false_colour(float value);
 
 /// Computes the colours of a lit skin, one per vertex. rviz does not light a marker that has colours, and its own
