@@ -242,16 +242,27 @@ ControlCurve demo_of(RunOptions& options, const Model& model)
   return curve;
 }
 
-Wrinkles wrinkles_of(const RunOptions& options, const Model& model, const RunSummary& summary)
+// Measures wrinkles, unless Ctrl-C ends the run before they are measured.
+void measure(const RunOptions& options, const Model& model, RunSummary& summary)
 {
   WrinkleSettings settings;
-  if (const std::vector<double>& box = options.wrinkles_in; !box.empty())
-    for (std::size_t i = 0; i < 2; ++i)
-    {
-      settings.lower[1 + i] = 1e-3 * box[i];
-      settings.upper[1 + i] = 1e-3 * box[2 + i];
-    }
-  return measure_wrinkles(summary.rest, summary.end, model.skin.triangles, settings);
+  for (std::size_t i = 0; i < options.wrinkles_in.size(); ++i)
+    (i < 2 ? settings.lower : settings.upper)[1 + i % 2] = 1e-3 * options.wrinkles_in[i];
+  Progress progress;
+  const auto go_on = [&](double done)
+  {
+    if (interrupt_requested())
+      throw Interrupted();
+    progress.update("wrinkles", done);
+  };
+  try
+  {
+    summary.wrinkles = measure_wrinkles(summary.rest, summary.end, model.skin.triangles, settings, go_on);
+  }
+  catch (const Interrupted&)
+  {
+    summary.complete = false;
+  }
 }
 
 void simulate(RunOptions& options)
@@ -302,7 +313,7 @@ void simulate(RunOptions& options)
     throw;
   }
   if (options.wrinkles || !options.wrinkles_in.empty())
-    summary.wrinkles = wrinkles_of(options, *model, summary);
+    measure(options, *model, summary);
   if (run.folder)
     run.folder->finish(json_of(*model, summary));
   if (run.plot)
@@ -336,8 +347,7 @@ void add_run_command(CLI::App& app)
   command->add_flag("--demo", options->demo, "play the scene's demo once, expressions and poses of bones");
   command->add_flag("--to-equilibrium", options->to_equilibrium,
                     "relax to equilibrium under the final activations, within --seconds (10)");
-  add_positive(*command, "--tolerance", options->tolerance,
-               "of equilibrium: remaining motion divided by displacement (0.001)");
+  add_positive(*command, "--tolerance", options->tolerance, "of equilibrium: motion left over displacement (0.001)");
   command->add_flag("--ledger", options->solver.ledger, "keep the energy ledger and print it");
   command->add_option("--bone", options->bones,
                       "motion of a bone in the face frame: NAME=X,Y,Z,RX,RY,RZ, shift [mm] and rotation vector about "
@@ -358,8 +368,7 @@ void add_run_command(CLI::App& app)
                       "FILE.png, and FILE.svg beside it: force on bodies that tissue touches, over time");
   command->add_option("--movie", options->movie,
                       "FILE.gif, drawn without a display and joined by ImageMagick, or a folder for frame_NNNN.png");
-  command->add_flag("--wrinkles", options->wrinkles,
-                    "measure the furrows that the skin has at the end and not at rest");
+  command->add_flag("--wrinkles", options->wrinkles, "measure furrows that the skin has not at rest");
   command
       ->add_option(
           "--wrinkles-in", options->wrinkles_in,

@@ -278,10 +278,11 @@ TEST_F(RunModel, a_motion_that_diverges_ends_with_an_error_and_no_frame_of_it)
 TEST_F(RunModel, interrupted_leaves_whole_files_and_130)
 {
   const ProgramResult result = run_program({ "run", model, "--backend", "cpu", "--activate", "pull=0.5", "--seconds",
-                                             "10000", "--frame-rate", "50", "--frames", frames },
+                                             "10000", "--frame-rate", "50", "--wrinkles", "--frames", frames },
                                            frames + "/skin_0003.ply");
   EXPECT_EQ(result.code, 130);
   EXPECT_EQ(result.errors, "interrupted\n");
+  EXPECT_EQ(result.output.find("wrinkles   "), std::string::npos) << "were measured after the interrupt";
   std::size_t skins = 0;
   for (const std::string& name : names_in(frames))
   {

@@ -100,8 +100,7 @@ TEST(Effects, every_form_of_element_on_every_instruction_set_in_float_and_double
         {
           const Vectors one = motion(model, "cpu", 1, true, set);
           EXPECT_LT(difference(one, expected), precision == Precision::double_precision ? 1e-5 : 2e-3) << set;
-          for (const int threads : { 2, 4 })
-            EXPECT_EQ(one, motion(model, "cpu", threads, true, set)) << set << ", " << threads << " threads";
+          EXPECT_EQ(one, motion(model, "cpu", 3, true, set)) << set;
         }
       }
     }

@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <stdexcept>
 
 namespace frontalis
 {
@@ -118,6 +120,41 @@ TEST(Wrinkles, leave_out_what_is_there_at_rest)
   EXPECT_TRUE(found.furrows.empty());
   EXPECT_EQ(found.count, 0);
   EXPECT_EQ(found.depth, 0);
+}
+
+TEST(Wrinkles, are_measured_until_progress_throws)
+{
+  const Sheet flat = sheet(2e-3, [](double, double) { return 0; });
+  std::vector<double> done;
+  measure_wrinkles(flat.skin, flat.skin, flat.triangles, {}, [&](double now) { done.push_back(now); });
+  EXPECT_GE(done.size(), flat.skin.vertices.size() / 500);
+  EXPECT_TRUE(std::is_sorted(done.begin(), done.end()));
+  EXPECT_GE(done.front(), 0);
+  EXPECT_LE(done.back(), 1);
+  std::size_t calls = 0;
+  const auto stop = [&](double)
+  {
+    if (++calls == 3)
+      throw std::runtime_error("stop");
+  };
+  EXPECT_THROW(measure_wrinkles(flat.skin, flat.skin, flat.triangles, {}, stop), std::runtime_error);
+  EXPECT_EQ(calls, 3u);
+}
+
+// The heights of a wave do not depend on the fineness of the mesh.
+TEST(Wrinkles, have_the_same_height_on_a_finer_mesh)
+{
+  const auto wave = [](double, double z) { return 0.5e-3 * std::cos(2 * pi * (z - 40e-3) / 10e-3); };
+  std::array<double, 2> height{};
+  for (const double edge : { 0.5e-3, 2e-3 })
+  {
+    const Sheet skin = sheet(edge, wave);
+    const std::size_t row = static_cast<std::size_t>(std::lround(40e-3 / edge)),
+                      n = static_cast<std::size_t>(std::lround(80e-3 / edge)) + 1;
+    height[edge < 1e-3 ? 0 : 1] = fold_heights(skin.skin, skin.triangles, 10e-3)[row * n + n / 2];
+  }
+  EXPECT_NEAR(height[0], 0.5e-3, 0.02e-3);
+  EXPECT_NEAR(height[1], height[0], 0.01e-3);
 }
 
 }  // namespace

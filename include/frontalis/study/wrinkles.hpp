@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace frontalis
@@ -48,8 +49,9 @@ std::vector<double> fold_heights(const SkinState& skin, const SkinTriangles& tri
 
 /// Measures the furrows that a skin has now and did not have at rest, from present heights less those at rest. The
 /// direction of the furrows is that in which heights change least. Sections across this direction are searched for
-/// furrows, which are joined to lines. Sections follow the skin without folds, so that a fold may overhang.
+/// furrows, which are joined to lines. Sections follow the skin without folds, so that a fold may overhang. `progress`
+/// is called now and then with the completed fraction; an exception that it throws ends the measurement.
 Wrinkles measure_wrinkles(const SkinState& rest, const SkinState& now, const SkinTriangles& triangles,
-                          const WrinkleSettings& settings = {});
+                          const WrinkleSettings& settings = {}, const std::function<void(double)>& progress = {});
 
 }  // namespace frontalis

@@ -14,38 +14,51 @@ namespace
 
 using Vector = Eigen::Vector3d;
 
+constexpr double piece_size =
+    0.2;  // edge of the pieces of skin that a fit uses, over the standard deviation of its window
+constexpr std::size_t vertices_per_report = 256;  // vertices between two calls of `progress`
+
 Vector to_eigen(const std::array<float, 3>& p) { return { p[0], p[1], p[2] }; }
 
-// Vertices sorted into cubes of space, so that those near a point are found quickly.
+// The place of a point in a grid of cubes.
+std::array<int, 3> cube_of(const Vector& p, double edge)
+{
+  const auto along = [&](int axis) { return static_cast<int>(std::floor(p[axis] / edge)); };
+  return { along(0), along(1), along(2) };
+}
+
+// A piece of the skin: its mean place and normal, and its area.
+struct Piece
+{
+  Vector place = Vector::Zero(), normal = Vector::Zero();
+  double area = 0;
+};
+
+// Pieces sorted into cubes of space, so that those near a point are found quickly.
 class Cells
 {
 public:
-  Cells(const std::vector<std::array<float, 3>>& points, double edge) : points_(points), edge_(edge)
+  Cells(const std::vector<Piece>& pieces, double edge) : edge_(edge)
   {
-    for (std::size_t i = 0; i < points.size(); ++i)
-      cells_[key(to_eigen(points[i]), {})].push_back(i);
+    for (const Piece& piece : pieces)
+      cells_[cube_of(piece.place, edge)].push_back(piece);
   }
   template <class Visit>
   void near(const Vector& at, Visit&& visit) const
   {
-    for (int x = -1; x <= 1; ++x)
-      for (int y = -1; y <= 1; ++y)
-        for (int z = -1; z <= 1; ++z)
-          if (const auto cell = cells_.find(key(at, { x, y, z })); cell != cells_.end())
-            for (const std::size_t i : cell->second)
-              if ((to_eigen(points_[i]) - at).squaredNorm() < edge_ * edge_)
-                visit(i);
+    const auto [i, j, k] = cube_of(at, edge_);
+    for (int x = i - 1; x <= i + 1; ++x)
+      for (int y = j - 1; y <= j + 1; ++y)
+        for (int z = k - 1; z <= k + 1; ++z)
+          if (const auto cell = cells_.find({ x, y, z }); cell != cells_.end())
+            for (const Piece& piece : cell->second)
+              if ((piece.place - at).squaredNorm() < edge_ * edge_)
+                visit(piece);
   }
 
 private:
-  std::array<int, 3> key(const Vector& p, const std::array<int, 3>& shift) const
-  {
-    const auto along = [&](int axis) { return static_cast<int>(std::floor(p[axis] / edge_)) + shift[axis]; };
-    return { along(0), along(1), along(2) };
-  }
-  const std::vector<std::array<float, 3>>& points_;
   double edge_;
-  std::map<std::array<int, 3>, std::vector<std::size_t>> cells_;
+  std::map<std::array<int, 3>, std::vector<Piece>> cells_;
 };
 
 std::vector<double> areas_of(const SkinState& skin, const SkinTriangles& triangles)
@@ -61,6 +74,31 @@ std::vector<double> areas_of(const SkinState& skin, const SkinTriangles& triangl
   return areas;
 }
 
+// The skin in pieces of about `edge`, so that the cost of a fit does not grow with the fineness of the mesh. Vertices
+// in one cube are one piece if their normals have the same main axis and sign: the two sides of a thin sheet, such as a
+// lip, stay apart.
+std::vector<Piece> pieces_of(const SkinState& skin, const SkinTriangles& triangles, double edge)
+{
+  const std::vector<double> areas = areas_of(skin, triangles);
+  std::map<std::pair<std::array<int, 3>, int>, Piece> sums;
+  for (std::size_t v = 0; v < areas.size(); ++v)
+  {
+    const Vector place = to_eigen(skin.vertices[v]), normal = to_eigen(skin.normals[v]);
+    int axis = 0;
+    normal.cwiseAbs().maxCoeff(&axis);
+    Piece& sum = sums[{ cube_of(place, edge), normal[axis] < 0 ? axis : axis + 3 }];
+    sum.place += areas[v] * place;
+    sum.normal += areas[v] * normal;
+    sum.area += areas[v];
+  }
+  std::vector<Piece> pieces;
+  pieces.reserve(sums.size());
+  for (const auto& [where, sum] : sums)
+    if (sum.area > 0)
+      pieces.push_back({ sum.place / sum.area, sum.normal.normalized(), sum.area });
+  return pieces;
+}
+
 // Heights of the skin above the skin without folds, whose points and normals are here as well.
 struct SmoothSkin
 {
@@ -68,33 +106,35 @@ struct SmoothSkin
   std::vector<Vector> foot, normal;
 };
 
-SmoothSkin smooth_skin(const SkinState& skin, const SkinTriangles& triangles, double window)
+SmoothSkin smooth_skin(const SkinState& skin, const SkinTriangles& triangles, double window,
+                       const std::function<void(double)>& progress)
 {
-  const Cells cells(skin.vertices, 2.5 * window);
-  const std::vector<double> areas = areas_of(skin, triangles);
+  const Cells cells(pieces_of(skin, triangles, piece_size * window), 2.5 * window);
   SmoothSkin out;
   for (std::size_t i = 0; i < skin.vertices.size(); ++i)
   {
+    if (progress && i % vertices_per_report == 0)
+      progress(static_cast<double>(i) / static_cast<double>(skin.vertices.size()));
     const Vector at = to_eigen(skin.vertices[i]), own = to_eigen(skin.normals[i]);
-    std::vector<std::pair<std::size_t, double>> near;  // vertices near a point, and their weights
+    std::vector<std::pair<Piece, double>> near;  // pieces near the vertex, and their weights
     Vector normal = Vector::Zero();
     cells.near(at,
-               [&](std::size_t j)
+               [&](const Piece& piece)
                {
                  // The other side of a thin sheet, such as a lip, does not belong to this skin.
-                 if (own.dot(to_eigen(skin.normals[j])) < -0.5)
+                 if (own.dot(piece.normal) < -0.5)
                    return;
-                 const double d = (to_eigen(skin.vertices[j]) - at).norm() / window;
-                 near.emplace_back(j, areas[j] * std::exp(-0.5 * d * d));
-                 normal += near.back().second * to_eigen(skin.normals[j]);
+                 near.emplace_back(piece,
+                                   piece.area * std::exp(-0.5 * (piece.place - at).squaredNorm() / (window * window)));
+                 normal += near.back().second * piece.normal;
                });
     normal.normalize();
     const Vector a = normal.unitOrthogonal(), b = normal.cross(a);
     Eigen::Matrix<double, 6, 6> matrix = Eigen::Matrix<double, 6, 6>::Identity() * 1e-30;
     Eigen::Matrix<double, 6, 1> right = Eigen::Matrix<double, 6, 1>::Zero();
-    for (const auto& [j, weight] : near)
+    for (const auto& [piece, weight] : near)
     {
-      const Vector d = (to_eigen(skin.vertices[j]) - at) / window;
+      const Vector d = (piece.place - at) / window;
       const double x = d.dot(a), y = d.dot(b);
       Eigen::Matrix<double, 6, 1> terms;
       terms << 1, x, y, x * x, x * y, y * y;
@@ -270,14 +310,20 @@ double median(std::vector<double> values)
 
 std::vector<double> fold_heights(const SkinState& skin, const SkinTriangles& triangles, double window)
 {
-  return smooth_skin(skin, triangles, window).height;
+  return smooth_skin(skin, triangles, window, {}).height;
 }
 
 Wrinkles measure_wrinkles(const SkinState& rest, const SkinState& now, const SkinTriangles& triangles,
-                          const WrinkleSettings& settings)
+                          const WrinkleSettings& settings, const std::function<void(double)>& progress)
 {
-  const SmoothSkin smooth = smooth_skin(now, triangles, settings.window);
-  const std::vector<double> before = fold_heights(rest, triangles, settings.window);
+  const auto half = [&](double begin) -> std::function<void(double)>
+  {
+    if (!progress)
+      return {};
+    return [&progress, begin](double done) { progress(begin + 0.5 * done); };
+  };
+  const SmoothSkin smooth = smooth_skin(now, triangles, settings.window, half(0));
+  const std::vector<double> before = smooth_skin(rest, triangles, settings.window, half(0.5)).height;
   std::vector<double> heights(smooth.height);
   for (std::size_t v = 0; v < heights.size(); ++v)
     heights[v] -= before[v];
