@@ -91,6 +91,23 @@ TEST(Origin, holds_the_end_of_a_muscle_that_is_near_the_bone)
     EXPECT_EQ(all.count(rigid.node), 1U);
 }
 
+// The bone lies below the whole insertion, but ends 2 mm before the end of the origin that the scene gives.
+TEST(Origin, that_the_scene_gives_is_held_although_the_other_end_is_nearer_to_the_bone)
+{
+  std::string text = strand("", "  - {name: hold, rigid: bone, of: strand}\n", "");
+  const auto replace = [&](const std::string& old, const std::string& by)
+  { text.replace(text.find(old), old.size(), by); };
+  replace("centre: [-15, 0, -2], size: [30, 40, 4]", "centre: [-11, 0, -2], size: [58, 40, 4]");
+  replace("fibre: [1, 0, 0]", "origin: [20, 1, 3], insertion: [-20, 1, 3]");
+  const Model model = baked(text);
+  ASSERT_FALSE(model.rigid.empty());
+  for (const RigidNode& rigid : model.rigid)
+  {
+    const auto p = rest_position(model, rigid.node);
+    EXPECT_GT(model.to_scene.turned(p)[0] + model.to_scene.translation[0], 0);
+  }
+}
+
 TEST(Origin, that_is_not_at_the_bone_is_an_error)
 {
   try

@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <regex>
+#include <set>
 #include <string>
 
 namespace frontalis
@@ -58,6 +60,45 @@ TEST(SharedActionUnits, what_the_scene_lacks_is_left_out)
     EXPECT_NE(std::string(error.what()).find("units.yaml:3: action_units.AU1.pull: found '2'; must be at least -1"),
               std::string::npos)
         << error.what();
+  }
+}
+
+// Forms of one side, such as smile_left, take the muscles and bones whose names end with that side, so that each needs
+// a counterpart of the same weight.
+TEST(SharedActionUnits, both_heads_have_the_same_expressions_and_both_sides_of_each)
+{
+  const std::set<std::string> wanted{
+    "raise_brows", "frown",  "blink",           "squint",         "cheek_raise", "nose_wrinkle", "upper_lip_raise",
+    "smile",       "pucker", "lip_corner_down", "lower_lip_down", "chin_raise",  "lip_stretch",  "lip_press",
+    "jaw_open",    "puff",   "surprise",        "anger",          "sadness",     "fear",         "disgust",
+    "joy"
+  };
+  for (const std::string name : { "head", "real_face" })
+  {
+    const std::string file = FRONTALIS_SOURCE_DIRECTORY "/config/" + name + ".yaml", text = text_of(file);
+    // meshes that are not shipped need only exist for their scene to be read
+    const TemporaryFolder meshes;
+    const std::regex mesh("\\{file: ([^},]+)");
+    for (std::sregex_iterator found(text.begin(), text.end(), mesh), end; found != end; ++found)
+      meshes.write((*found)[1], "");
+    SceneOptions options;
+    if (name == "real_face")
+      options.mesh_directory = meshes.path();
+    const Scene scene = read_scene(file, options);
+    std::set<std::string> found;
+    for (const auto& [expression, pose] : scene.expressions)
+    {
+      found.insert(expression);
+      EXPECT_FALSE(pose.activation.empty() && pose.bones.empty()) << name << ": " << expression;
+      for (const auto& [muscle, weight] : pose.activation)
+        if (const std::size_t side = muscle.rfind("_left"); side != std::string::npos)
+        {
+          const auto right = pose.activation.find(muscle.substr(0, side) + "_right");
+          ASSERT_NE(right, pose.activation.end()) << name << ": " << expression << ": " << muscle;
+          EXPECT_EQ(right->second, weight) << name << ": " << expression << ": " << muscle;
+        }
+    }
+    EXPECT_EQ(found, wanted) << name;
   }
 }
 

@@ -128,7 +128,7 @@ MuscleFibres fit_muscle(const SceneMuscle& muscle, const TriangleMesh& mesh, con
         "its fibres cannot be found: no NURBS volume follows its shape (rms distance {:.2f} mm at a width of {:.1f} "
         "mm){}",
         1e3 * fit.distance, 1e3 * coordinates.width, remedy);
-  return { Vector3d::Zero(), std::move(volume), fit.volume };
+  return { Vector3d::Zero(), std::move(volume), fit.volume, muscle.origin.given() };
 }
 
 }  // namespace
@@ -149,7 +149,10 @@ std::vector<MuscleFibres> find_fibres(const Scene& scene, const Volumes& volumes
                    else if (to_vector(muscle.fibre).norm() > 0)
                      fibres[m].direction = to_vector(muscle.fibre).normalized();
                    else if (const auto net = made_net(scene, muscle))
+                   {
                      fibres[m].volume = volume_of(*net);
+                     fibres[m].from_origin = true;
+                   }
                    else
                    {
                      const auto entry = std::find_if(volumes.entries().begin(), volumes.entries().end(),

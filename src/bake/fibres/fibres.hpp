@@ -11,7 +11,8 @@ struct MuscleFibres
 {
   Vector3d direction{ 0, 0, 0 };  ///< unit vector; used if there is no `volume`
   std::optional<NurbsVolume> volume;
-  double fitted_size = 0;  ///< size of `volume` if it was fitted to the muscle [m3], else 0
+  double fitted_size = 0;    ///< size of `volume` if it was fitted to the muscle [m3], else 0
+  bool from_origin = false;  ///< `along` is known to grow from the muscle's origin to its insertion
 
   /// Coordinate of p along the fibres: from 0 to 1 in a `volume`, otherwise the component along `direction` [m].
   double along(const Vector3d& p) const { return volume ? volume->closest(p)[0] : p.dot(direction); }

@@ -88,8 +88,8 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
                     const LocalFrame& frame, Model& model, BakeMonitor& monitor);
 
 /// Chooses among the nodes `near` a bone those at which a muscle originates. They are corners of the muscle's voxels in
-/// one of its ends, which are 15 % of the fibres' length: the end with the larger proportion of near nodes. Empty if
-/// neither end has a near node.
+/// one of its ends, which are 15 % of the fibres' length: the origin where it is known and has near nodes, otherwise
+/// the end with the larger proportion of near nodes. Empty if neither end has a near node.
 std::vector<std::size_t> origin_nodes(std::size_t muscle, const MuscleFibres& fibres, const std::vector<bool>& near,
                                       const LocalFrame& frame, const Model& model);
 

@@ -34,6 +34,8 @@ std::vector<std::size_t> origin_nodes(std::size_t muscle, const MuscleFibres& fi
           if (near[node])
             ends[end].push_back(node);
         }
+  if (fibres.from_origin && !ends[0].empty())
+    return ends[0];
   // Fractions are compared, not numbers, because the other end may be wider and so have more nodes near the bone.
   const auto share = [&](int end) { return static_cast<double>(ends[end].size()) / corners[end]; };
   return share(0) >= share(1) ? ends[0] : ends[1];
