@@ -53,8 +53,8 @@ struct VoxelCut
 class DeviceModel
 {
 public:
-  /// Throws BackendUnavailable if the memory is too small: for the largest arrays, with the required and the free
-  /// bytes, before anything is allocated.
+  /// Throws BackendUnavailable if the memory is too small. Before anything is allocated, the sum of the largest arrays
+  /// is compared with the free memory; the message has both numbers of bytes.
   DeviceModel(const Model& model, const Discretisation& discretisation, const CutChoice& cut);
 
   /// Returns step arguments with all constant data. `idle_parts`: include the data of parts that are switched off.

@@ -36,8 +36,9 @@ VoxelCut::VoxelCut(const Model& model, const CutChoice& choice)
       patches = std::move(cut);
   if (patches)
     return;
-  // Where fibres fill more of the lanes than this, computing them apart costs more than it saves. On an H200 a head
-  // whose fibres fill 0.28 of them became faster, a shell with 0.48 slower.
+  // If fibres fill more than this fraction of the lanes, computing their stress in a kernel of its own costs more than
+  // it saves. On an H200 such a kernel made a head faster whose fibres fill 0.28 of the lanes, and a shell slower whose
+  // fibres fill 0.48.
   constexpr double dense_fibres = 0.4;
   StripSettings cutting = choice.strips;
   strips = std::make_unique<VoxelStrips>(model, cutting);

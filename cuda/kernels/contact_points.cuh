@@ -165,7 +165,7 @@ __device__ __forceinline__ Push find_push(const StepArguments& g, const ContactP
     c.clearances[at.index].w = 0;
   else if (!far)
   {
-    // The factor 0.999 keeps this a lower bound of the distance despite rounding errors.
+    // The factor 0.999 makes the result a lower bound of the distance despite rounding errors.
     distance = 0.999f * (sampled ? value.value / static_cast<float>(physics::steepest_field)
                                  : static_cast<float>(physics::distance_without_samples(
                                        body.field, double(body.reach),

@@ -127,8 +127,8 @@ struct ElementVoxel : PaletteVoxel<float, With>
   }
 };
 
-/// The voxel whose data are in a place. `relaxes`: time by which viscous stresses relax before the forces are computed
-/// [s].
+/// Makes a voxel from its data in `place`. `relaxes`: time by which viscous stresses relax before the forces are
+/// computed [s].
 template <Effects With>
 __device__ __forceinline__ ElementVoxel<With> element_voxel(const StepArguments& g, const ElementPlace& place,
                                                             const Activations& activation, float relaxes)

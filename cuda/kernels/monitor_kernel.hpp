@@ -30,8 +30,8 @@ struct StiffestVoxel
   float stiffness = 0;  ///< bound [N/m]
   std::int32_t voxel = -1;
 
-  /// Keeps the entry with the higher frequency bound; of equal ones, that of the stiffer voxel. The result of several
-  /// calls does not depend on their order. Values that are not finite count as the largest.
+  /// Keeps the entry with the higher frequency bound or, if the bounds are equal, the entry with the stiffer voxel. The
+  /// result of several calls does not depend on their order. Values that are not finite count as the largest.
   FRONTALIS_LAW void add(const StiffestVoxel& part)
   {
     const bool none = frequency_squared != frequency_squared;

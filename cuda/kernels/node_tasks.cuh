@@ -61,8 +61,8 @@ static __device__ __noinline__ void follow_bone(const StepArguments& g, std::int
     physics::move_to(to[i], old[i], g.dt, n.u[i], n.v[i]);
 }
 
-/// One function per NodeEffect. They are called through a table, so that their registers do not count for the kernels.
-/// `With`: effects of nodes.
+/// One function per NodeEffect. They are called through a table instead of being inlined, so that the code of all
+/// effects together does not raise the number of registers of a kernel. `With`: effects of nodes.
 using NodeFunction = void (*)(const StepArguments& g, std::int32_t index, const NodeStep& at, NodeState& n);
 template <Effects With>
 static __device__ const NodeFunction node_functions[node_effects] = {

@@ -19,7 +19,8 @@ struct PatchMemory
   float4* push;         // per point of contact: force on it, and its coordinates
   float4* shell;        // displacements of vertices of shells, and forces of triangles
   uint4* tables;        // see PatchShell
-  // two entries, used in turn (see put_pushes()), because slow threads may still read the entry of the previous patch
+  // smallest distance that put_pushes() found, as bits; patches use two entries in turn, because slow threads may still
+  // read the entry of the previous patch
   std::uint32_t* least;
 };
 

@@ -30,7 +30,8 @@ int resident_blocks(const StepLaunch& launch)
   const void* const kernel = cuda::kernel(launch.effects);
   const auto bytes = static_cast<int>(launch.shared_bytes);
   cudaFuncAttributes known{};
-  // The kernel's limit of shared memory is common to all solvers, and another one may need more, so it is only raised.
+  // The kernel's limit of shared memory is common to all solvers. It is never lowered, because another solver may need
+  // more.
   if (cudaGetDevice(&device) != cudaSuccess ||
       cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device) != cudaSuccess ||
       cudaFuncGetAttributes(&known, kernel) != cudaSuccess ||

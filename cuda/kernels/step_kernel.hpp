@@ -41,7 +41,7 @@ __host__ __device__ inline bool slides_only(const NodeTask& task)
          (task.of[node_load] & task.of[node_gliding] & task.of[node_prescribed] & task.of[node_rigid]) < 0;
 }
 
-/// Likewise for a node on a surface that moves with a bone.
+/// Whether the node slides on a surface that moves with a bone and has no other effect.
 __host__ __device__ inline bool glides_only(const NodeTask& task)
 {
   return task.of[node_gliding] >= 0 &&

@@ -12,8 +12,8 @@ namespace cuda
 // Small blocks spread a few thousand vertices over all multiprocessors.
 constexpr std::uint32_t touch_block = 64;
 
-// The kernels of this file may be launched before the kernel before them has ended (launch_after()). They wait here
-// until it has ended. Code for compute capabilities before 9.0 cannot wait, and is never launched early.
+// A kernel of this file may be launched before the preceding kernel has ended (launch_after()). It calls this function
+// to wait for that end. Code for compute capabilities below 9.0 cannot wait, and is never launched early.
 __device__ __forceinline__ void wait_for_kernel_before()
 {
 #if __CUDA_ARCH__ >= 900
@@ -33,7 +33,8 @@ __global__ void __launch_bounds__(touch_block)
 {
   let_next_kernel_start();
   const std::uint32_t v = blockIdx.x * touch_block + threadIdx.x;
-  // This may be read before the wait: the kernel that wrote it had ended before the latest step kernel began.
+  // control->next may be read before the wait, because the kernel that wrote it had ended before the latest step kernel
+  // began.
   const TouchStage stage = c.looks_only ? TouchStage::hold : c.control->next;
   float moved = 0;
   if (v < c.vertex_count)

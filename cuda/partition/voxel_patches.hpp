@@ -27,7 +27,7 @@ struct BoundWork
 };
 
 /// A compact part of the model that a block keeps in shared memory: the nodes that it owns, all their voxels, and the
-/// halo. The halo is the other nodes of these voxels, and those that BoundWork requires.
+/// halo. The halo consists of the other nodes of these voxels and of the nodes that BoundWork requires.
 struct Patch
 {
   std::uint32_t first_node;   ///< device node; own nodes are contiguous

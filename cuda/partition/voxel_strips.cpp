@@ -168,7 +168,7 @@ struct Builder
 // Packs pieces of about equal length into warps, in order.
 std::vector<std::vector<Piece>> pack(const std::vector<Piece>& pieces)
 {
-  // A few warps stay open, so that a large piece does not close one that small pieces could fill.
+  // A few warps stay open, so that a large piece does not close a warp that small pieces could fill.
   constexpr std::size_t open_warps = 16;
   std::vector<std::vector<Piece>> warps;
   std::vector<std::int32_t> used;
@@ -279,7 +279,8 @@ VoxelStrips::VoxelStrips(const Model& model, const StripSettings& settings) : ro
 namespace
 {
 
-// Fraction of entries for which has(entry) is true, in rows of lanes with any of them; 0 if there are none.
+// Fraction of entries for which has(entry) is true, among the rows of lanes with at least one such entry; 0 if there is
+// no such row.
 template <class Entry, class Has>
 double filled_rows(const std::vector<Entry>& entries, const Has& has)
 {

@@ -53,9 +53,9 @@ struct VoxelStrips
   std::vector<std::uint32_t> fibre_words;  ///< fibre_word() of each entry; 0: none
   std::vector<std::uint32_t> device_node;  ///< number of each model node on the device
 
-  /// Fraction of the entries that have a voxel, in rows with any.
+  /// Fraction of the entries that have a voxel, among the rows with at least one voxel.
   double filled() const;
-  /// Fraction of the entries that have fibres, in rows with any; 0 without fibres.
+  /// Fraction of the entries that have fibres, among the rows with at least one such entry; 0 without fibres.
   double filled_by_fibres() const;
 };
 

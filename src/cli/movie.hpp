@@ -16,7 +16,8 @@ public:
   /// Throws Error if the folder of the frames cannot be made, or ImageMagick, which joins them, is missing.
   Movie(std::string path, double frame_rate, const Model& model);
 
-  /// Draws a frame; the skin is in the face frame, and that of the first frame is the face at rest.
+  /// Draws an image of the skin, which is in the coordinates of the face frame. The first call must show the face at
+  /// rest.
   void add(const SkinState& skin, const Controls& controls);
   /// If `path` is a GIF, joins the frames to it and removes their folder. Throws Error if that fails.
   void finish();

@@ -42,8 +42,8 @@ const SkinState& PosedFace::take(const Controls& pose, double seconds, const std
     if (interrupt_requested())
       throw Interrupted();
   }
-  // The guard checks only every few hundred steps, so that it must also check the last ones. After a finding it has
-  // returned to an earlier state, and the rest of the motion is repeated.
+  // The guard checks only every few hundred steps, so that the end of the motion needs a check of its own. If this
+  // check finds a fault, the guard returns to an earlier state, and the rest of the motion is repeated.
   const double end = solver_->time();
   for (std::int64_t before = -1; before != guard_.counts().rollbacks;)
   {

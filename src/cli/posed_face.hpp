@@ -18,9 +18,10 @@ public:
 
   /// The skin at rest, in the face frame.
   const SkinState& rest() const { return rest_; }
-  /// Moves linearly to the pose in two thirds of the time and stays there for the rest. `seconds`: time on the clock of
-  /// the activations. Returns the skin at the end, in the face frame. `watch` is called with the completed fraction.
-  /// Throws Unstable if the guard stops the motion, Error if the skin is not finite, and Interrupted after Ctrl-C.
+  /// Moves linearly to the pose during the first two thirds of `seconds`, which are on the clock of the activations,
+  /// and holds it for the last third. Returns the skin at the end, in the face frame. `watch` is called with the
+  /// completed fraction. Throws Unstable if the guard stops the motion, Error if the skin is not finite, and
+  /// Interrupted after Ctrl-C.
   const SkinState& take(const Controls& pose, double seconds, const std::function<void(double done)>& watch);
   /// The solver in the pose that was taken last.
   const Solver& solver() const { return *solver_; }

@@ -97,7 +97,8 @@ void change_rest(const RestOptions& options)
       add_creases(model, posed(face, *before, pose, options.seconds), options.set);
     fmt::print("creases  {:g} of the folds of {} stay\n", options.set, fmt::join(options.creases, ", "));
   }
-  // what is kept for the model that this one was made of, such as its influence, does not hold for it
+  // The model gets a hash of its own, because cached data of the original model, such as its influence
+  // (FitSettings::cache), do not hold for it.
   if (!model.scene_hash.empty())
     model.scene_hash = content_hash(fmt::format("{} {} {} {} {}", before->scene_hash, options.neutral, options.set,
                                                 fmt::join(options.creases, ","), options.seconds));

@@ -206,7 +206,7 @@ void check_options(const RunOptions& options)
     throw WrongUsage("--seconds times --frame-rate: more than a million frames");
 }
 
-// Effects are switched off in reverse order, because each comes after those that it needs.
+// Effects are switched off in reverse order, because an effect comes after the effects that it needs.
 void switch_off(Solver& solver, EffectSet off)
 {
   const auto effects = every_effect();

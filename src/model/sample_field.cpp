@@ -112,8 +112,8 @@ void visit_samples(const Visit& visit)
         visit((k * width + j) * width + i, std::array<int, 3>{ { side(i), side(j), side(k) } });
 }
 
-// Samples the bricks in which the distance reaches the brick's band. A sample that several bricks share is computed
-// once.
+// Samples each brick that has a point whose distance is in the brick's band. A sample that several bricks share is
+// computed once.
 void fill(SampledField& field, const std::vector<Band>& bands, const Distance& distance, const Loop& loop)
 {
   const double spacing = field.spacing, edge = DistanceField::brick_edge * spacing;

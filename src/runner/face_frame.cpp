@@ -38,7 +38,8 @@ struct BoneForces
   const std::vector<RigidTransform>& pose;
   std::vector<Reaction> sum;
 
-  /// Adds a force and a moment about the local frame's origin as the bone carries it. Bone -1 stands still.
+  /// Adds a force and its moment about the point of the bone that rests at the origin of the local frame. Forces on
+  /// bone -1, which stands still, are left out.
   void add(std::int32_t bone, const Vector& force, const Vector& moment)
   {
     if (bone < 0)
@@ -71,8 +72,9 @@ Vector normal_at(const ConstraintSurface& surface, const RigidTransform& pose, c
   return vector_of(pose.turned(array_of(plane.normal)));
 }
 
-/// The part of a force on a sliding node that the surface carries: all of it along the normal, and across it what
-/// friction can hold. Without a normal all of it counts, as it would in equilibrium.
+/// The part of a force on a sliding node that the surface carries: the whole component along the normal, and as much of
+/// the tangential component as friction can hold. Where there is no normal, the surface carries the whole force, as it
+/// would in equilibrium.
 Vector carried(const Vector& normal, double friction, const Vector& force)
 {
   if (dot(normal, normal) == 0)

@@ -39,8 +39,8 @@ RigidTransform interpolate(const RigidTransform& from, const RigidTransform& to,
   double axis[3] = { 1, 0, 0 };
   if (angle > 3)
   {
-    // Close to half a turn the sine is small. There the axis follows from the symmetric part of r less the cosine,
-    // which is a multiple of axis * axis^T.
+    // Close to half a turn the sine is small. There the axis follows from the symmetric part of r minus the cosine
+    // times the identity, which is a multiple of axis * axis^T.
     int k = 0;
     for (int i = 1; i < 3; ++i)
       k = r[i][i] > r[k][k] ? i : k;

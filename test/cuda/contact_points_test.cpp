@@ -21,8 +21,8 @@ namespace
 constexpr double dt = 20e-6;
 constexpr int steps = 2000;
 
-// The points of contact of a model whose nodes follow prescribed paths, computed by the host's code and by the GPU's
-// code.
+// Forces on the points of contact of a model whose nodes follow prescribed paths, computed by the host's code and by
+// the GPU's code.
 class TwoWays
 {
 public:

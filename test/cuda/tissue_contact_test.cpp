@@ -27,7 +27,8 @@ constexpr int steps = 1500;
 
 using Vector = std::array<double, 3>;
 
-// Surfaces of a model whose nodes follow prescribed paths, computed by the host's code and by the GPU's code.
+// Contact forces on the surfaces of a model whose nodes follow prescribed paths, computed by the host's code and by the
+// GPU's code.
 class TwoWays
 {
 public:
@@ -131,7 +132,8 @@ public:
         node = { { node[0] + double(part.x), node[1] + double(part.y), node[2] + double(part.z) } };
       }
   }
-  // Moves the nodes on. The displacements are those of single precision, so that both ways see the same.
+  // Moves the nodes along their paths. Displacements are rounded to single precision, so that the host's code and the
+  // GPU's code use equal numbers.
   template <class Path>
   void move(const Path& path)
   {

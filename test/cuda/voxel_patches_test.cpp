@@ -105,7 +105,7 @@ TEST(VoxelPatches, HaveTheNodesOfVoxelsBesideTheirOwn)
   const Model block = test::block_model(s);
   BoundWork bound;
   bound.beside.resize(block.voxels.size());
-  // Some of these voxels are far away.
+  // Some of the voxels in these lists are far from each other.
   for (std::size_t e = 0; e < bound.beside.size(); e += 3)
     for (const std::size_t other : { (e + 20) % bound.beside.size(), e / 2 })
     {

@@ -1,4 +1,5 @@
-// Newton's third law: the force of a body on tissue acts on the bone that carries the tissue, however it does so.
+// Newton's third law: the force of a body on tissue also acts on the bone that carries the tissue, in whichever way the
+// bone carries it.
 
 #include "cli/bar_model.hpp"
 
@@ -100,7 +101,7 @@ TEST_P(BoneForces, balance_those_on_a_finger)
   const auto solver = make_solver(model, { backend, 1 });
   Controls controls = rest_controls(*model);
   controls.activation = { 0.5 };
-  // the bone moves too, so that its moment is about another point than at rest
+  // The bone moves too, so that the reference point of its moment is not where it was at rest.
   set_bone_motion(*model, "base", { { 1, 0, 0, 0, 1, 0, 0, 0, 1 }, { 0, 0, 1.5e-3 } }, controls.bone);
   solver->advance(0.2, controls);
   const Equilibrium found = solver->settle(controls, 1e-7, 5);
@@ -111,7 +112,8 @@ TEST_P(BoneForces, balance_those_on_a_finger)
   const auto &on_base = bones[0].reaction, &on_finger = bones[1].reaction;
   const double size = std::hypot(on_finger.force[0], on_finger.force[1], on_finger.force[2]);
   EXPECT_GT(size, 1e-3);
-  // the moment on a bone is about the face frame's origin as the bone carries it; the base has shifted this point
+  // The moment on a bone is about the point of the bone that rests at the face frame's origin. The base has shifted
+  // this point.
   const auto& shift = bones[0].pose.translation;
   const std::array<double, 3> carried{ { shift[1] * on_base.force[2] - shift[2] * on_base.force[1],
                                          shift[2] * on_base.force[0] - shift[0] * on_base.force[2],
@@ -123,7 +125,7 @@ TEST_P(BoneForces, balance_those_on_a_finger)
     EXPECT_NEAR(on_base.moment[axis] + carried[axis] + on_finger.moment[axis], 0, 1e-3 * distance * size) << axis;
   }
 
-  // each part that carries the bar does so by more than the accuracy of the sums
+  // Each part of the bone that carries the bar contributes a force larger than the error of the sums.
   const std::vector<BodyFrame> bodies = bodies_in_face_frame(*solver, *model);
   if (hold == Hold::many)
   {

@@ -1,4 +1,5 @@
-// frames of a runner have the fine lines of their own skin where nothing may follow them
+// The frame after a step or a reset of a runner has the fine lines of its own skin, because the face may stand still
+// afterwards.
 
 #include "frontalis/runner/runner.hpp"
 

@@ -247,7 +247,7 @@ TEST(Runner, RealTimeKeepsPaceWithTheClock)
       EXPECT_GE(frames[f].time, frames[f - 1].time);
     }
   }
-  // a frame makes up for at most two that were late
+  // A frame makes up for at most two late frames.
   EXPECT_LE(frames.back().real_time_factor, 1 + 3 / rate + 1e-6);
 }
 

@@ -58,7 +58,8 @@ TEST(Fallback, FromTheGpuIsToldOnce)
   EXPECT_NE(second->description().find("backend cuda: "), std::string::npos) << second->description();
 }
 
-// Diagnostics show these words. On a GPU they name the device and how it is cut into patches or strips.
+// Diagnostics show the description of a solver. That of the GPU backend names the device, and says whether the model is
+// cut into patches or strips.
 TEST(Description, NamesTheDevice)
 {
   const auto model = std::make_shared<const Model>(test::block_model({}));

@@ -76,8 +76,8 @@ double true_over_bound(const Model& model, double amplitude)
 
 }  // namespace
 
-// Energies are found from transformed displacements, but forces of the reference backend from shape functions at the
-// centroid.
+// Energies are computed from transformed displacements. The reference backend computes forces independently of them,
+// from shape functions at the centroid.
 TEST_P(CutVoxels, ForcesAreTheGradientOfTheEnergy)
 {
   for (const auto hourglass : { HourglassControl::scalar, HourglassControl::assumed_strain })

@@ -24,8 +24,8 @@ constexpr double thickness = test::film_thickness;
 
 double width(const Model& model) { return model.skin.vertices.back()[0]; }
 
-// The skin, compressed along the direction at this angle to x. `where`: maps a position along this direction to the
-// position up to which the strain has accumulated; null: the strain is uniform.
+// The skin, compressed along the direction at `angle` to x. `where`: integral of the local shortening from 0 to a
+// position along this direction, relative to the shortening at `strain`; null: the strain is uniform.
 Vertices compressed(const Model& model, double strain, double angle = 0,
                     double (*where)(double along, double width) = nullptr)
 {
@@ -139,7 +139,7 @@ TEST(Film, AStretchOfTheFilmAtRestDelaysLines)
 {
   Model model = film_model(100);
   model.film.stretch = 0.1;
-  // Across the lines the film is stretched too.
+  // The film is also stretched along the lines, which delays them by Poisson's ratio times that stretch.
   const double needed = film_critical_strain(model.film) + (1 + model.film.poisson) * model.film.stretch;
   FilmEquilibrium film(model);
   EXPECT_EQ(amplitude(model, heights(film, compressed(model, 0.9 * needed), 1)), 0);

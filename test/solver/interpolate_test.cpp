@@ -49,7 +49,7 @@ TEST(Interpolate, APointThatABoneTurnsAboutStaysAndTheShiftAlongTheAxisIsScaled)
     EXPECT_NEAR(p[0], 5, 1e-12);
     EXPECT_NEAR(p[1], -2, 1e-12);
     EXPECT_NEAR(p[2], 0.8 * fraction, 1e-12);
-    // A part of a part of the motion is a part of the motion.
+    // Half of the remaining motion ends at a pose of the whole motion.
     expect_same(interpolate(interpolate(RigidTransform(), to, fraction), to, 0.5),
                 interpolate(RigidTransform(), to, 0.5 + 0.5 * fraction));
   }

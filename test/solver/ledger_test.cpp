@@ -134,8 +134,8 @@ TEST_P(Ledger, closes_for_an_end_that_is_pulled_and_a_side_that_is_pressed)
   EXPECT_GT(ledger["load"], 0);
 }
 
-// Velocities belong to the middle between two steps. When the step changes, their first change covers the mean of both
-// steps.
+// Velocities belong to the middle of each step. When the length of steps changes, the first change of the velocities
+// covers the mean of both lengths.
 TEST_P(Ledger, closes_where_the_time_step_changes)
 {
   Model model = bar(0);

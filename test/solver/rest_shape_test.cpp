@@ -40,7 +40,8 @@ Vectors wave(const Model& model, double factor)
   return u;
 }
 
-// Free of moment is the shape at `set` times the fold, so the energy grows with the square of the distance from it.
+// The shape at `set` times the fold has no bending moment, so that the energy grows with the square of the distance
+// from this shape.
 TEST_P(RestShape, the_part_of_a_fold_that_stays_has_no_moment)
 {
   const Model smooth = film_on_block();
@@ -61,8 +62,9 @@ TEST_P(RestShape, the_part_of_a_fold_that_stays_has_no_moment)
     EXPECT_NEAR(energy(creased, factor) / folded, std::pow(factor - set, 2), 0.02) << factor;
 }
 
-// A plate on an elastic layer that is held below: with the stiffness D k^4 of the plate and q of the layer against a
-// wave (doc/wrinkles.md), a crease comes up by the part D k^4 / (D k^4 + q).
+// A plate lies on an elastic layer whose lower side is held. The plate resists a wave with the stiffness D k^4, the
+// layer with the stiffness q (doc/wrinkles.md). In equilibrium the height of a crease is thus D k^4 / (D k^4 + q) times
+// its height in the shape without bending moments.
 TEST_P(RestShape, a_crease_comes_up_as_far_as_the_tissue_yields)
 {
   Model smooth = film_on_block();

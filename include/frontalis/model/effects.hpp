@@ -27,7 +27,7 @@ EffectSet effects_of(const Model& model);
 /// Whether one of the voxel's materials is viscous.
 bool is_viscous(const Model& model, std::size_t voxel);
 
-/// A rigid body that tissue may touch, and so exert a force on, or one that is only shown (BodyShape::only_shown).
+/// A rigid body. Either tissue may touch and push it, or it is only shown (BodyShape::only_shown).
 struct TouchedBody
 {
   std::string name;

@@ -34,7 +34,8 @@ struct Model : ModelPresets
   /// computed. Empty if it is the centre of every voxel.
   std::vector<std::array<float, 3>> tissue_centre;
 
-  // The mixture of voxel e is entries mixture_begin[e] .. mixture_begin[e + 1]; proportions add up to 1.
+  // The mixture of voxel e is in the entries from mixture_begin[e] up to, but not including, mixture_begin[e + 1]. Its
+  // proportions add up to 1.
   std::vector<Material> materials;
   std::vector<std::int32_t> mixture_begin;
   std::vector<std::int16_t> mixture_material;
@@ -44,7 +45,8 @@ struct Model : ModelPresets
   /// empty.
   std::vector<std::array<float, 6>> material_directions;
 
-  // The muscles of voxel e are entries fibre_begin[e] .. fibre_begin[e + 1]; directions have length 1.
+  // The muscles of voxel e are in the entries from fibre_begin[e] up to, but not including, fibre_begin[e + 1].
+  // Directions have length 1.
   std::vector<Muscle> muscles;
   std::vector<std::int32_t> fibre_begin;
   std::vector<std::int16_t> fibre_muscle;

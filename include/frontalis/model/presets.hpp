@@ -30,7 +30,7 @@ struct ModelPresets
   std::vector<Expression> expressions, action_units;
   struct DemoPhase
   {
-    std::int32_t expression = -1;   ///< index into expressions; -1: relax; -2: the expression of the phase before
+    std::int32_t expression = -1;   ///< index into expressions; -1: relax; -2: that of the previous phase
     double ramp = 0.3;              ///< [s] simulated
     double seconds = 1;             ///< [s] simulated
     std::vector<BonePose> bones{};  ///< other bones stay where they are

@@ -11,8 +11,8 @@
 namespace frontalis
 {
 
-/// Signed distance from a surface where nodes may slide along it, in local coordinates at rest: storage for the arrays
-/// of a physics::DistanceField, which documents them. See model/sample_field.hpp.
+/// Signed distance from a surface on which nodes slide or that tissue touches, in local coordinates at rest. Owns the
+/// arrays of a physics::DistanceField, which documents them. The functions of model/sample_field.hpp make such fields.
 struct SampledField
 {
   std::array<double, 3> origin{ { 0, 0, 0 } };

@@ -22,8 +22,8 @@ using Distance = std::function<SurfaceDistance(const std::array<double, 3>&)>;
 using Loop = std::function<void(std::size_t count, const std::function<void(std::size_t)>& body)>;
 void one_by_one(std::size_t count, const std::function<void(std::size_t)>& body);
 
-/// Most distances are requested for clusters of points, beginning with the middle point of a cluster. This is the edge
-/// of a cube around a cluster, in spacings.
+/// Edge of a cube that contains a cluster of points, in spacings. Most distances are requested for clusters of points,
+/// beginning with the middle point of the cluster.
 constexpr double cluster_extent = 9.01;
 
 /// Samples a distance every `spacing` [m] in all bricks (physics/distance_field.hpp) that sliding nodes can reach. A

@@ -10,8 +10,8 @@ namespace frontalis
 {
 
 /// A thin stiff film on the skin, such as epidermis on dermis. It wrinkles in lines that are finer than a voxel. The
-/// first vertices of Model::skin, those of the triangles `carried`, follow the voxels; each later vertex halves an edge
-/// between two earlier ones on a smooth surface.
+/// first vertices of Model::skin, those of the triangles `carried`, follow the voxels; each later vertex is the middle
+/// of an edge between two earlier vertices, on a smooth surface through them.
 struct SkinFilm
 {
   double thickness = 0;     ///< [m]; 0: the skin has no film

@@ -92,7 +92,7 @@ FRONTALIS_LAW SurfaceFoot<T> surface_foot(const SurfaceTriangle<T>& triangle, co
   const T bulge =
       N::of(0.5) * (foot.inside[1] * dot(n[1], ab) + foot.inside[2] * dot(n[2], ac) - dot(foot.mean_normal, mean));
   foot.gap = way * stretch - bulge;
-  // x = corner 0 + weight 1 * ab + weight 2 * ac + way * direction; bulges: derivatives of the bulge by the weights.
+  // x = corner 0 + weight 1 * ab + weight 2 * ac + way * direction; bulges[i]: d(bulge) / d(weight i).
   const Vec3<T> side[3] = { { T(0), T(0), T(0) }, ab, ac };
   T bulges[3];
   for (int i = 0; i < 3; ++i)

@@ -31,10 +31,11 @@ struct PinholeCamera
 PinholeCamera camera_with(int width, int height, double field_of_view);
 
 /// PinholeCamera::to_camera of a camera at `position` that looks at `target`, with z of the scene up in the picture,
-/// turned by `roll` about its axis [rad]. Throws Error if the two points are one, or one is above the other.
+/// turned by `roll` about its axis [rad]. Throws Error if the two points coincide, or if one of them is vertically
+/// above the other.
 RigidTransform look_at(const std::array<double, 3>& position, const std::array<double, 3>& target, double roll = 0);
 
-/// What a pixel shows. Labels from skin_label on are regions of the skin (skin_appearance.hpp).
+/// What a pixel shows. Labels from skin_label on are regions of the skin (face_appearance.hpp).
 enum Label : std::uint8_t
 {
   background_label,
@@ -44,7 +45,7 @@ enum Label : std::uint8_t
   skin_label
 };
 
-/// Colour of what has the label inside_label; it is drawn without light.
+/// Colour of surfaces with the label inside_label. They are drawn in this colour, whatever the light.
 constexpr std::array<float, 3> inside_colour{ { 0.25F, 0.09F, 0.08F } };
 
 /// Triangles that are drawn with smooth shading. Colours are red, green and blue as displays take them, 0..1.
@@ -98,13 +99,14 @@ struct Images
 class Renderer
 {
 public:
-  /// Throws Error if indices are out of range, or lists have other lengths than the vertices.
+  /// Throws Error if indices are out of range, or if a list with one entry per vertex has a different length from the
+  /// list of vertices.
   Renderer(const RenderScene& scene, const PinholeCamera& camera);
   ~Renderer();
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  /// Colours are means over samples x samples rays per pixel; with 1, of the ray through its centre.
+  /// Colours are means over samples x samples rays per pixel. A single ray passes through the centre of the pixel.
   Images images(const Light& light, int samples = 1) const;
   /// Whether a point of a surface (frame of the scene) is within the image and nothing is more than 2 mm in front of
   /// it.

@@ -60,7 +60,8 @@ struct RunnerSettings
   std::function<bool()> wants_displacements{};
   /// Called once per frame in the runner's thread. If it is not set or returns false, forces on bones are not computed.
   std::function<bool()> wants_bone_forces{};
-  /// Called after each slice of a step() in the runner's thread. If it returns true, the step ends as by cancel_step().
+  /// Called after each slice of a step() in the runner's thread. If it returns true, the step ends as if cancel_step()
+  /// had been called.
   std::function<bool()> ends_steps{};
 };
 

@@ -29,7 +29,7 @@ struct FacePose
 /// One phase of the demonstration: a linear ramp to an expression and to poses of bones, which are then held.
 struct DemoPhase
 {
-  std::string expression;       ///< empty: as in the phase before
+  std::string expression;       ///< empty: as in the previous phase
   std::vector<BonePose> bones;  ///< poses of bones; other bones stay where they are
   double ramp = 0.3;            ///< duration of the ramp [simulated s]
   double seconds = 1.0;         ///< duration of the phase, including the ramp [simulated s]

@@ -28,7 +28,7 @@ struct HeadTemplate
     double depth = 0;              ///< [m]
     Vector3 direction{ 0, 0, 0 };  ///< direction of the depth, into the head; 0: against the skin's normal
   };
-  /// A solid of which bones are built. Solids across the midline are symmetric; bones are mirrored at y = 0.
+  /// A solid from which bones are built. Solids across the midline are symmetric; bones are mirrored at y = 0.
   struct Solid
   {
     enum class Kind

@@ -83,7 +83,8 @@ struct SceneMuscle
   std::optional<ControlNet> net{};
 };
 
-/// Loss of strength by palsy or a toxin. The active stress at a place is multiplied by the factors of all that apply.
+/// Loss of strength by palsy or a toxin. The active stress at a place is multiplied by the factors of all weaknesses
+/// that apply there.
 struct SceneWeakness
 {
   std::vector<std::string> muscles;  ///< muscles that are weakened; empty: all

@@ -5,8 +5,8 @@ namespace frontalis
 
 class Solver;
 
-/// Changes the damping of a solver of make_solver() from now on, also after a reset: proportional to mass [1/s], in
-/// place of Model::damping. Throws Error if it is not finite or below 0.
+/// Sets the mass-proportional damping [1/s] of a solver that make_solver() made, in place of Model::damping. The new
+/// value also holds after a reset. Throws Error if it is not finite or below 0.
 void set_damping(Solver& solver, double damping);
 
 }  // namespace frontalis

@@ -63,8 +63,8 @@ struct InstabilityReport
   std::string text() const;           ///< the whole report in two or three sentences
 };
 
-/// Thrown when the motion was stopped. The solver is then at the latest good state, or at the one before if that failed
-/// too.
+/// Thrown when the motion was stopped. The solver is then at the latest good state or, if the last try passed a check
+/// before it failed, at the good state before that check.
 class Unstable : public Error
 {
 public:
@@ -99,8 +99,8 @@ public:
   void advance(double seconds, const Controls& target);
   /// Checks the present state. After a finding it restores a good state, or throws Unstable.
   void check();
-  /// Like Solver::settle, with the checks of advance(), except that of the ledger, which is opened again. Throws the
-  /// errors of both.
+  /// Like Solver::settle, with all checks of advance() but the check of the ledger, because settling opens a new
+  /// ledger. Throws the errors of Solver::settle and of advance().
   Equilibrium settle(const Controls& target, double tolerance, double seconds,
                      const std::function<bool(const Equilibrium&)>& go_on = {});
   /// Accepts the present state as good without a check. Call it after reset(), or after displacements were set.

@@ -21,8 +21,8 @@ RigidTransform rigid_motion(const std::array<double, 3>& rotation, const std::ar
 /// Largest displacement [m] of a corner of the box between the origin and `corner` [m] from one pose to another.
 double farthest_way(const RigidTransform& from, const RigidTransform& to, const std::array<double, 3>& corner);
 
-/// Bound [m] of the length of the path of any corner of that box along interpolate(): the highest speed times the
-/// duration.
+/// Bound [m] of the length of the path that a corner of the box between the origin and `corner` [m] takes along
+/// interpolate(): the highest speed times the duration.
 double fastest_way(const RigidTransform& from, const RigidTransform& to, const std::array<double, 3>& corner);
 
 }  // namespace frontalis

@@ -46,7 +46,7 @@ struct Controls
   std::vector<RigidTransform> bone;  ///< one per bone: motion from its rest pose, in the local frame
 };
 
-/// Controls at a fraction (0..1) between two controls; bones rotate about the shortest axis.
+/// Controls at a fraction (0..1) between two controls. Bones rotate through the smallest angle.
 Controls interpolate(const Controls& from, const Controls& to, double fraction);
 
 /// The complete state of a motion at one moment. Only the solver that made it can read it.
@@ -73,8 +73,8 @@ public:
   virtual void reset() = 0;
 
   /// Advances by exactly `seconds` of simulated time in equal steps of at most the safe time step. Over that time
-  /// activations and bone poses change linearly to `target`; poses rotate about the shortest axis. Throws Error, with
-  /// the state unchanged, if the target is not finite, outside 0..1 or of the wrong length. Throws Diverged, after
+  /// activations and bone poses change linearly to `target`; bones rotate through the smallest angle. Throws Error,
+  /// with the state unchanged, if the target is not finite, outside 0..1 or of the wrong length. Throws Diverged, after
   /// which only reset() and restore() are of use.
   virtual void advance(double seconds, const Controls& target) = 0;
 
@@ -98,7 +98,7 @@ public:
   /// settings on the same machine. unpack() throws Error on other bytes, and then leaves the state unchanged.
   virtual std::string pack() = 0;
   virtual void unpack(const std::string& bytes) = 0;
-  /// Steps between two checks of the guard, which take about a hundred times as long as monitor() and save().
+  /// Number of steps between two checks of the guard; they take about 100 times as long as monitor() and save().
   virtual int steps_per_check() const = 0;
   /// Limits steps to this fraction (0..1] of the safe time step; initially 1. Throws Error if it is out of range.
   virtual void slow_down(double share) = 0;

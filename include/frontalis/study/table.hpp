@@ -10,11 +10,12 @@
 namespace frontalis
 {
 
-/// [m]; tables of studies list lengths in millimetres.
+/// One millimetre [m], the unit of lengths in the tables of studies.
 constexpr double millimetre = 1e-3;
 
 /// The results of a study as text, markdown, CSV or JSON. Numbers have six significant digits in text and markdown. In
-/// CSV and JSON they have as many as restore them exactly. NaN becomes an empty cell, or null in JSON.
+/// CSV and JSON they have so many digits that a reader gets exactly the same numbers. NaN becomes an empty cell, or
+/// null in JSON.
 class Table
 {
 public:

@@ -13,8 +13,8 @@ namespace frontalis
 struct WrinkleSettings
 {
   /// Standard deviation [m] of the window in which a quadratic surface is fitted to the skin. This surface represents
-  /// the skin without folds. It follows folds a little: of the height of waves it takes 0.4 % at a wavelength of 16 mm,
-  /// 4 % at 20 mm and a third at 30 mm.
+  /// the skin without folds. It follows folds a little: its own waves have 0.4 % of the height of folds with a
+  /// wavelength of 16 mm, 4 % at 20 mm and a third at 30 mm.
   double window = 10e-3;
   double least_depth = 0.15e-3;    ///< smallest depth of a furrow below the ridges on both sides of it [m]
   double least_length = 10e-3;     ///< shorter furrows are left out [m]

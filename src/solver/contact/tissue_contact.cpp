@@ -16,7 +16,7 @@ namespace
 using Vector = physics::Vec3<double>;
 
 // A vertex may be behind a triangle without touching it, beyond its rim or because the two do not face each other. The
-// pair is checked again when the vertex has moved by this length, in shortest voxel edges.
+// pair is checked again when the vertex has moved by this multiple of the shortest voxel edge.
 constexpr double patience = 0.02;
 
 // The range of blocks that a thread processes.

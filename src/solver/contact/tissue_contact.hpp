@@ -15,8 +15,8 @@ namespace frontalis
 
 /// Contact of the tissue's surfaces with each other and with themselves. Each vertex is pushed out of triangles that
 /// face it, on other surfaces or on other parts of its own, and the corners of such a triangle are pushed in the
-/// opposite direction (physics/surface_touch.hpp). Each side has half of the stiffness, because the vertices of both
-/// are pushed out of the other.
+/// opposite direction (physics/surface_touch.hpp). Each side has half of the stiffness, because the vertices of either
+/// side are pushed out of the other side.
 ///
 /// A vertex forms pairs with at most `most_pairs` triangles that face it, and follows the surface from one triangle to
 /// the next. A grid finds the pairs within three steps: the first sorts all triangles into cells, the second searches

@@ -25,8 +25,8 @@ namespace touch_search
 {
 
 // Lengths are in units of the shortest voxel edge.
-/// A vertex and a triangle form a pair up to the first distance in front of the triangle and up to the second depth
-/// behind it.
+/// A vertex and a triangle form a pair if the vertex is at most `reach` in front of the triangle or at most
+/// `deepest_held` behind it.
 constexpr double reach = 0.5, deepest_held = 1;
 /// Depth behind a triangle up to which the search finds a vertex. A vertex moves less than that between two searches.
 constexpr double deepest_found = 0.5;

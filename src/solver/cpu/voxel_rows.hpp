@@ -82,7 +82,7 @@ struct CutSlot
 };
 
 /// The voxels of a model in tiles, plane by plane (k), and the nodes of each plane. Tiles have the same width for every
-/// instruction set; one with fewer lanes processes a tile in several parts.
+/// instruction set; with fewer SIMD lanes, a tile is processed in several parts.
 struct VoxelRows
 {
   VoxelRows(const Model& model, const Discretisation& discretisation);

@@ -73,8 +73,8 @@ void EnergyLedgerKeeper::open(double time, double dt)
   const EnergyLedger now = balance(time, dt);
   for (const EnergyTerm& term : now.terms)
     ledger_.initial += term.kind == EnergyTerm::Kind::stored ? term.value : 0;
-  // The ledger starts at the time of the displacements, half a step after that of the velocities, so that the work in
-  // between is subtracted.
+  // The ledger starts at the time of the displacements, half a step after that of the velocities, so that the work
+  // during this half step is subtracted.
   ledger_.initial = ledger_.initial - now["gravity"] - now["load"] - now["constraint"];
 }
 

@@ -141,7 +141,8 @@ Instability attempted(const Part& part)
   }
 }
 
-// The first retry starts at the latest good state, later ones at the previous one, where the fault may have begun.
+// The first retry starts at the latest good state. If a retry fails after it has passed a check, the next retry starts
+// at the good state before that check, because the check may have overlooked the beginning of the fault.
 void Guard::Implementation::go_back(Instability finding, const Controls& target, double end)
 {
   if (tries > 0 && before.there)
@@ -215,8 +216,8 @@ InstabilityReport Guard::Implementation::examined(Instability finding, const Con
         break;
     }
   }
-  // Chooses the voxel that is crushed or not finite; if there is none, the stiffest, because it is the most stretched
-  // one.
+  // Chooses the voxel that is crushed or not finite; if there is none, the stiffest voxel, because the most stretched
+  // voxel is the stiffest.
   std::int32_t voxel =
       !(worst.worst_jacobian >= crushed) || worst.stiffest_voxel < 0 ? worst.worst_voxel : worst.stiffest_voxel;
   if (finding == Instability::past_rim)

@@ -94,8 +94,8 @@ bool contains_any(const Model& model, std::size_t voxel, const std::vector<std::
   return false;
 }
 
-// Returns the rigid nodes, and the nodes whose displacement is prescribed along every axis. Returns none if these are
-// all nodes, so that a model that cannot move has a time step too.
+// Returns the rigid nodes, and the nodes whose displacement is prescribed along every axis. Returns an empty list if
+// these are all nodes of the model, so that a model that cannot move has a time step too.
 std::vector<std::int32_t> held_nodes(const Model& model)
 {
   std::vector<int> directions(model.nodes.size(), 0);

@@ -41,7 +41,8 @@ struct VoxelProperties
   double stiffness = 0;
   physics::TissueCentre<double> centre{};  ///< point where the voxel's stress is computed
   std::vector<LawPart> laws;
-  /// Prony terms: fractions averaged by stiffness, rates [1/s] averaged by relaxing stiffness.
+  /// Prony terms as means over the materials: fractions weighted by stiffness, rates [1/s] weighted by the stiffness
+  /// that relaxes.
   std::array<double, 2> viscous_share{};
   std::array<double, 2> viscous_rate{};
 };

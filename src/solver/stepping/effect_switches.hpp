@@ -29,7 +29,7 @@ private:
   EffectSet running_;
 };
 
-/// Whether fibres have the effect: they contract a voxel and stiffen it.
+/// Whether the effect is one of the two effects of fibres, which contract a voxel and stiffen it.
 inline bool is_of_fibres(Effect effect) { return effect == Effect::contraction || effect == Effect::fibre_stiffness; }
 /// The effect to which memory for fibres is attributed: contraction if the model has that effect.
 Effect effect_of_fibres(const Model& model);

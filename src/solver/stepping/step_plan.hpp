@@ -30,8 +30,8 @@ struct StepPlan
 {
   int steps = 0;
   double dt = 0;  ///< [s]
-  /// Duration for which forces change velocities in the first step [s]. It differs from dt if the previous step had
-  /// another length, because velocities belong to the middle between two steps.
+  /// Duration for which forces change velocities in the first step [s]. Velocities belong to the middle of a step, so
+  /// that this is half of the previous step plus half of dt.
   double first_kick = 0;
   double time = 0;                ///< time at the start of the plan [s]
   bool bound_every_step = false;  ///< true: find the frequency bound in every step; false: in the last one only

@@ -20,8 +20,9 @@ struct Kick
   T impulse[3];  ///< gain times gravity [m/s]
 };
 
-/// `damping`: mass-proportional [1/s]; `seconds`: time over which forces change velocities; gravity [m/s2]. Damping
-/// above 1.8 / `seconds` leaves a nineteenth of a velocity: central differences would turn velocities round instead.
+/// `damping`: mass-proportional [1/s]; `seconds`: time over which forces change velocities; gravity [m/s2]. With
+/// damping above 1.8 / `seconds`, a step leaves a nineteenth of each velocity, because unlimited central differences
+/// would reverse velocities.
 template <class T, class Gravity>
 Kick<T> kick_of(double damping, double seconds, const Gravity& gravity)
 {
@@ -64,12 +65,12 @@ struct NodeWork
   double constraint;  ///< work of constraints
 };
 
-/// Finds the work on a node from its velocities [m/s]: `before` the step, `after` it, and after it if there were no
-/// constraints (`free`). Each impulse acts along the mean of the velocities before and after the step, so that the
-/// works add up to the change of kinetic energy exactly. `beside`, `beside_before`: displacement [m] that constraints
-/// made in addition to dt v, in this step and in the previous one. The mean of the other forces over both steps did
-/// work along this displacement too, which the constraints absorbed. `damping` [1/s], `kick` [s]: the first two
-/// arguments of kick_of().
+/// Finds the work on a node from its velocities [m/s] before the step (`before`), after the step (`after`), and as they
+/// would be after the step without constraints (`free`). Each impulse acts along the mean of the velocities before and
+/// after the step, so that the works add up to the change of kinetic energy exactly. `beside`, `beside_before`:
+/// displacement [m] that constraints made in addition to dt v, in this step and in the previous one. The mean of the
+/// other forces over both steps did work along this displacement too, which the constraints absorbed. `damping` [1/s],
+/// `kick` [s]: the first two arguments of kick_of().
 FRONTALIS_LAW NodeWork node_work(double before, double free, double after, double beside, double beside_before,
                                  double damping, double kick)
 {

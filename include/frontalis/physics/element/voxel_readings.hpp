@@ -17,7 +17,8 @@ struct VoxelReadings
   T stiffness;  ///< bound of the largest eigenvalue of the stiffness [N/m]
 };
 
-/// Energy of the elastic laws [J]. `material`: that of the voxel, or a part of it.
+/// Energy of the elastic laws [J]. `material`: the neo-Hookean material of the voxel, or that material with only one of
+/// its two moduli.
 template <class Voxel, class T>
 FRONTALIS_LAW T elastic_energy(const Voxel& voxel, const NeoHookean<T>& material, const Kinematics<T>& k)
 {

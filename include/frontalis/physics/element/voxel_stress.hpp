@@ -38,7 +38,8 @@ FRONTALIS_LAW void add_laws(const Voxel& voxel, const Kinematics<T>& k, Matrix3<
   voxel.each_law([&](const auto& law) { law.add_stress(k, P); });
 }
 
-/// First Piola-Kirchhoff stress of the elastic laws. `material`: that of the voxel, or a part of it.
+/// First Piola-Kirchhoff stress of the elastic laws. `material`: the neo-Hookean material of the voxel, or that
+/// material with only one of its two moduli.
 template <class Voxel, class T>
 FRONTALIS_LAW Matrix3<T> elastic_stress(const Voxel& voxel, const NeoHookean<T>& material, const Kinematics<T>& k)
 {
