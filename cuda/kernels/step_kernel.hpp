@@ -236,8 +236,8 @@ constexpr int most_turns = 8;
 constexpr int most_muscles = 512;
 
 /// Entries of patch_tasks. An entry of at least 0 is an index into StepArguments::sliding: the node slides on a surface
-/// that stands still and has no other effect. none: the node has no effect. still: the node never moves. other - i: the
-/// node has NodeTask i.
+/// that stands still and has no other effect. `none`: the node has no effect. `still`: the node never moves. `other` -
+/// i: the effects of the node are those of the NodeTask with the index i.
 namespace patch_task
 {
 constexpr std::int32_t none = -1;

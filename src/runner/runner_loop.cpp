@@ -221,7 +221,7 @@ void Runner::Implementation::serve_switch(SwitchRequest& request)
 {
   try
   {
-    // The state is checked first, so that the guard does not save one that became unstable since the latest check.
+    // The state is checked first, so that the guard does not save a state that became unstable since the latest check.
     if (guard && !frame.failed)
       guard->check();
   }

@@ -227,7 +227,7 @@ TEST_F(ModelFile, AnotherSceneOrPackageIsRefusedWhereOneIsAskedFor)
   const std::string other = fault("fedcba9876543210");
   EXPECT_NE(other.find("is of another scene"), std::string::npos) << other;
   EXPECT_NE(other.find("fedcba9876543210"), std::string::npos) << other;
-  // The package's version is a short text near its name.
+  // The file contains the version of the package as text. Its first digit is changed.
   std::string content = bytes(path("a.vtkhdf"));
   const Model again = read_model(path("a.vtkhdf"));
   EXPECT_EQ(again.scene_hash, model.scene_hash);

@@ -103,7 +103,7 @@ TEST_P(TissuesTouch, self_contact_is_switched_while_running)
   const Model model = pressed_fold();
   Model without = model;
   switch_off(without, EffectSet().with(Effect::self_contact));
-  // The bound of the time step still includes contact.
+  // The bound of the time step also includes contact while it is switched off, so that equal steps need a fixed length.
   const double dt = 1e-5;
   const auto solver = make(model, 2, true, dt), other = make(without, 2, true, dt);
   solver->switch_effect(Effect::self_contact, false);

@@ -72,8 +72,9 @@ FRONTALIS_LAW SurfaceVertex<T> surface_vertex(const SideWeights<T>& w, const Vec
   return { sum, normal, { scale * cross(turned[1], normal), scale * cross(normal, turned[0]) } };
 }
 
-/// The part of surface_node_force() that is the same for all corners: how a moment on the normal changes with the
-/// derivatives of the displacement [N]. `turn`: generalised force on the normal [N m].
+/// The part of surface_node_force() that is the same for all corners: minus the generalised forces [N] that a moment on
+/// the normal exerts on the derivatives, along the voxel's axes, of the displacement along the normal. `turn`:
+/// generalised force on the normal [N m].
 template <class T>
 FRONTALIS_LAW Vec3<T> normal_forces(const Vec3<T>& turn, const Vec3<T>& dual0, const Vec3<T>& dual1,
                                     const Vec3<T> (&tangent)[2], const Vec3<T>& inverse_spacing)

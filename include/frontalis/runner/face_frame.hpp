@@ -22,8 +22,8 @@ struct BodyFrame
 std::vector<BodyFrame> bodies_in_face_frame(const Solver& solver, const Model& model);
 /// Motions and reactions of the model's bones, in their order. With `forces`, the reaction of a bone is the force of
 /// the tissue whose nodes the bone holds, of the tissue that slides on its surfaces and of the tissue that touches its
-/// bodies; without, it is 0. Held and sliding nodes count by their elastic, fibre and contact forces and, on a CPU,
-/// those of shells; their inertia, viscosity and weight do not count.
+/// bodies; without, it is 0. Held and sliding nodes count by their elastic and fibre forces and, on a CPU, by those of
+/// contact and shells; their inertia, viscosity and weight do not count.
 std::vector<BodyFrame> bones_in_face_frame(Solver& solver, const Model& model, bool forces);
 
 }  // namespace frontalis

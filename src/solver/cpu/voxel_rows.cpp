@@ -143,7 +143,8 @@ Tile next_tile(const Model& model, std::int32_t& e)
   Tile tile{};
   for (int strip = 0; strip < Tile::strips; ++strip)
   {
-    // An empty strip reads and writes zeros at the address of the previous strip.
+    // An empty strip has the node indices of the previous strip. It adds zeros to the forces there, because its lanes
+    // have no stiffness.
     const bool any = e < count && model.voxels[e][2] == plane;
     const auto first = any ? e : tile.first_voxel[strip - 1];
     tile.first_voxel[strip] = first;
