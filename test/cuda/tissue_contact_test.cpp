@@ -230,7 +230,8 @@ TEST(TissueContactOfTheGpu, IsThatOfTheHost)
       contact.move(path);
       again.move(path);
     }
-    // the gap of 1 mm is closed while 1.15 mm times the sine of the path's angle exceed it; waves move this by a little
+    // The gap of 1 mm is closed while 1.15 mm times the sine of the path's angle is larger. Waves change these times a
+    // little.
     EXPECT_NEAR(touching, steps * (1 - 2 * std::asin(1 / 1.15) / 3.14159265), 0.02 * steps);
     EXPECT_GT(contact.searches, 5);
     EXPECT_GT(most, 1e-3);

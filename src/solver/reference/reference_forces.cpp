@@ -23,7 +23,7 @@ struct ViscousVoxel : ModelVoxel
   physics::Symmetric3<double> relaxed(int n) const { return stresses[n]; }
   void keep_relaxed(int n, const physics::Symmetric3<double>& H) const
   {
-    // Other backends also store tensor 2, the sum of tensors 0 and 1. This one does not need it.
+    // Other backends also store tensor 2, the sum of tensors 0 and 1. The reference backend does not need it.
     if (n < 2)
       stresses[n] = H;
   }

@@ -217,11 +217,11 @@ Discretisation::Discretisation(const Model& model)
   bound_at_rest();
 }
 
-// Adds inertia to nodes that would shorten the time step: a node that slides into a voxel with little tissue, such as a
-// sliver of tendon below a bone's surface, may have a higher frequency than all free nodes. The added inertia makes its
-// mass at most a fifth of that of a whole voxel's tissue. Then finds bound_mass. A held node follows its master, so
-// that only the sums of stiffness and mass over their group count; within a group bound_mass is in proportion to
-// stiffness.
+// Adds inertia to attached nodes that slide and would shorten the time step. Such a node may have a higher frequency
+// than all free nodes if the voxels around it have little tissue, such as a sliver of tendon below a bone's surface.
+// Its mass grows to at most a fifth of the mass of a whole voxel. Then finds bound_mass. A held node follows its
+// master, so that only the sums of stiffness and mass over their group count; within a group bound_mass is in
+// proportion to stiffness.
 void Discretisation::share_masses()
 {
   std::vector<double> stiffness(node_mass.size(), 0), tissue(node_mass.size(), 0);

@@ -21,8 +21,8 @@ struct Kick
 };
 
 /// `damping`: mass-proportional [1/s]; `seconds`: time over which forces change velocities; gravity [m/s2]. With
-/// damping above 1.8 / `seconds`, a step leaves a nineteenth of each velocity, because unlimited central differences
-/// would reverse velocities.
+/// damping above 1.8 / `seconds`, a step leaves a nineteenth of each velocity, because central differences without this
+/// limit could reverse velocities.
 template <class T, class Gravity>
 Kick<T> kick_of(double damping, double seconds, const Gravity& gravity)
 {
