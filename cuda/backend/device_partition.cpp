@@ -45,8 +45,8 @@ VoxelCut::VoxelCut(const Model& model, const CutChoice& choice)
   const bool laws = std::any_of(model.materials.begin(), model.materials.end(),
                                 [](const Material& material) { return material.law != Law::neo_hookean; });
   stress_apart = laws || strips->filled_by_fibres() < dense_fibres;
-  // Strips that compute fibres themselves take longer than others; more and shorter strips then share the work more
-  // evenly. Otherwise strips are lengthened until the device can run all of them at the same time.
+  // If the strips compute fibres themselves, those with fibres take longer than the others, and short strips share the
+  // work more evenly. Otherwise strips are lengthened until the device can run all of them at the same time.
   while (stress_apart && strips->strips.size() > choice.most_strips && cutting.planes < choice.most_planes)
   {
     const double wanted = cutting.planes * (static_cast<double>(strips->strips.size()) / choice.most_strips);

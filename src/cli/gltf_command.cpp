@@ -232,7 +232,8 @@ void write_gltf(const GltfOptions& options)
     }
     for (std::size_t m = 0; m < rest.size(); ++m)
     {
-      // the accessor of a mesh that never moved is shared by all targets
+      // A mesh that does not move in a target gets an accessor of zeros, which the mesh's other targets without motion
+      // share.
       const auto moved = [&](const Points& from, const Points& to, int& zeros)
       {
         if (from != to)

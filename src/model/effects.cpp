@@ -330,7 +330,7 @@ std::vector<TouchedBody> touched_bodies(const Model& model)
 std::vector<std::int32_t> moving_bones(const Model& model)
 {
   std::vector<std::int32_t> bone(model.nodes.size(), -1);
-  // Effects are visited in reverse order, because those that restrict a node override those that only touch it.
+  // Effects are visited in reverse order, because effects that restrict a node override effects that only touch it.
   for (auto effect = descriptions.rbegin(); effect != descriptions.rend(); ++effect)
     if (effect->set_bones != nullptr)
       effect->set_bones(model, bone);

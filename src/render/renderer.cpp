@@ -200,7 +200,7 @@ Hit Renderer::Implementation::meets_ball(const Vector& direction, const RenderBa
   const double root = b * b - a * (dot(ball.centre, ball.centre) - ball.radius * ball.radius);
   Hit hit;
   hit.depth = root > 0 ? (b - std::sqrt(root)) / a : guess;
-  // The camera is inside the ball.
+  // The depth is negative if the camera is inside the ball.
   if (hit.depth < 0)
     hit.depth = guess;
   hit.point = along({}, hit.depth, direction);

@@ -317,8 +317,7 @@ typename BodyContact<Real>::Energy BodyContact<Real>::energy_now(const Real* con
     energy.work += sum.work;
     energy.lost += sum.lost;
   }
-  // The sums include the steps up to the start of the latest one. What that step adds, which the sums would receive in
-  // the next step, is added here.
+  // The sums do not include the contribution of the latest step yet, because the next step adds it. It is added here.
   const std::vector<RigidTransform> present = bodies(bones);
   std::vector<Reaction> now(fields_.size());
   for (std::size_t p = 0; p < points_.size(); ++p)

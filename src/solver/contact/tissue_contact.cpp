@@ -347,8 +347,7 @@ void TissueContact<Real>::add_energies(const Real* const u[3], const std::vector
   if (idle())
     return;
   double lost = std::accumulate(lost_.begin(), lost_.end(), 0.0), stored = 0;
-  // The sums include the steps up to the start of the latest one. What that step adds, which the sums would receive in
-  // the next step, is added here.
+  // The sums do not include the contribution of the latest step yet, because the next step adds it. It is added here.
   std::vector<Real> components = moved_;
   std::vector<PairVertices> pair_vertices = pair_vertices_;
   std::vector<PairBlock<Real>> pairs = pairs_;

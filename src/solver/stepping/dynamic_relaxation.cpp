@@ -44,7 +44,7 @@ void DynamicRelaxation::observe(double time, NodalVectors& u, const Forces& forc
   const double squared = speed > slow_share * fastest_ ? rayleigh_quotient(u, f_now_, change) : 0;
   u_.swap(u);
   f_.swap(f_now_);
-  // Damping is critical for the slowest motion found. More damping would slow down faster motions.
+  // Damping is critical for the slowest motion found. With more damping, that motion would take longer to come to rest.
   if (squared > 0)
   {
     lowest_ = lowest_ > 0 ? std::min(lowest_, squared) : squared;
