@@ -50,7 +50,7 @@ double tip(const Frame& frame) { return frame.skin.landmarks[0][2] - 1; }
 
 RunnerSettings settings(Pace pace, double frame_rate = 100) { return { { "cpu", 1, 0 }, pace, frame_rate }; }
 
-/// The bar with such long time steps that any machine can run it in real time.
+/// The bar with such a high time scaling that any machine can run it in real time.
 std::shared_ptr<const Model> fast_bar()
 {
   Model model = *bar();

@@ -41,7 +41,7 @@ protected:
   {
     return make_solver(std::make_shared<const Model>(model), { GetParam(), 0, 0, true });
   }
-  // Plays a motion in slices and checks the balance after each.
+  // Plays a motion in slices and checks the balance after each slice.
   static EnergyLedger play(Solver& solver, const Controls& target, double seconds, int slices)
   {
     EnergyLedger ledger;

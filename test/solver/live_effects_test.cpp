@@ -38,7 +38,7 @@ std::vector<Effect> live_effects()
 {
   std::vector<Effect> effects;
   for (const Effect effect : every_effect())
-    // Contact and shells have tests of their own, because not every backend has them.
+    // Contact and shells have tests of their own, because scene_of() does not include them.
     if (traits_of(effect).not_live[0] == '\0' && effect != Effect::contact && effect != Effect::self_contact &&
         effect != Effect::shell)
       effects.push_back(effect);

@@ -114,7 +114,7 @@ TEST_P(Snapshots, motion_goes_on_with_the_same_bits)
     solver->restore(*snapshot);
     const Seen second = play(*solver, variant, 0.2f, 3e-4);
     EXPECT_TRUE(first == second) << variant.name;
-    // The restored state must not depend on what happened before.
+    // The restored state must not depend on the motion before restore().
     solver->set_displacements(Vectors(first.u.size(), { { 1e-5, 0, 0 } }));
     play(*solver, variant, 1, 0);
     solver->reset();
