@@ -110,8 +110,8 @@ __device__ __forceinline__ Place place_of(const TissueContactArguments& c, std::
   return place(c.vertices[v].rest) + place(c.moved[v]);
 }
 
-/// Edge of the grid's cells [m]. A corner's distance from its triangle's centre has grown at most by twice the largest
-/// displacement since it was measured.
+/// Edge of the grid's cells [m]. The distance of a corner from its triangle's centre has grown at most by twice the
+/// largest displacement since that distance was measured.
 __device__ __forceinline__ float cell_edge(const TissueContactArguments& c)
 {
   return float(touch_search::margin) * (float(touch_search::reach) * c.edge + __uint_as_float(c.control->radius) +

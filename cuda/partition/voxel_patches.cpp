@@ -170,8 +170,9 @@ std::vector<std::uint32_t> partition(const Model& model, const BoundWork& bound,
   return best;
 }
 
-// Class of each node: 2 if it only slides on a surface that stands still, 1 if it has other effects, else 0. The nodes
-// of a class have contiguous numbers, because a warp takes as long for one node with effects as for 32.
+// Class of each node: 1 if it is prescribed, moves with a bone or slides on a surface that moves; 2 if it only slides
+// on a surface that stands still; else 0. The nodes of a class have contiguous numbers, because a warp takes as long
+// for one node with effects as for 32.
 std::vector<char> busy_nodes(const Model& model)
 {
   std::vector<char> busy(model.nodes.size(), 0);

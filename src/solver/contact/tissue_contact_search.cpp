@@ -146,7 +146,7 @@ void TissueContact<Real>::sort_triangles()
   grid_.build(touch_search::margin * (reach_ + std::sqrt(largest)), centres);
 }
 
-// Returns the nearest triangles that a vertex may touch, one on each surface near it.
+// Returns the nearest triangles that a vertex may touch, at most `most_pairs`, of which no two share a corner.
 template <class Real>
 typename TissueContact<Real>::Found TissueContact<Real>::search(std::size_t p)
 {

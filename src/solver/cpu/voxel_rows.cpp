@@ -40,8 +40,8 @@ void add_fibres(const Model& model, const TileVoxels& voxels, Tile& tile, std::v
   tile.fibre_end = static_cast<std::int32_t>(slots.size());
 }
 
-// Adds the laws of a tile other than neo-Hookean, one slot per law. Unused lanes have valid parameters and the weight
-// 0.
+// Adds the laws of a tile other than neo-Hookean: one slot per law whose materials are averaged, and one slot per
+// material of the other laws. Unused lanes have valid parameters and the weight 0.
 void add_laws(const TileVoxels& voxels, Tile& tile, std::vector<LawSlot>& slots)
 {
   tile.law_begin = static_cast<std::int32_t>(slots.size());
