@@ -47,7 +47,7 @@ static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "the bytes of numbers a
 class Glb
 {
 public:
-  /// Adds vectors, or corners of triangles, and returns their accessor.
+  /// Adds vectors, or corners of triangles, and returns the index of their accessor.
   int add(const Points& vectors)
   {
     std::array<float, 3> low = vectors.at(0), high = low;

@@ -14,7 +14,7 @@ namespace
 
 using physics::DistanceField;
 
-// A point of the lattice of samples. Neighbouring bricks share the points on their common faces.
+// A point of the lattice of samples. Neighbouring bricks share the two layers of points at their common face.
 using Place = std::array<std::int32_t, 3>;
 
 class Lattice
