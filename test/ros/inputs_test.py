@@ -33,6 +33,8 @@ class Inputs(unittest.TestCase):
         cls.config = Client("/face", timeout=LIMIT)
         cls.warnings = []
         rospy.Subscriber("/rosout", Log, lambda log: cls.warnings.append(log.msg) if "refused" in log.msg else None)
+        cls.lacking = []
+        rospy.Subscriber("/rosout", Log, lambda log: cls.lacking.append(log.msg) if "tongueOut" in log.msg else None)
         cls.topics = {}
         for name, kind in (("joint_states", JointState), ("joint_trajectory", JointTrajectory), ("blendshapes", Blendshapes),
                            ("action_units", ActionUnits),
@@ -129,8 +131,11 @@ class Inputs(unittest.TestCase):
     def test_blendshapes_of_a_phone(self):
         self.send("blendshapes", Blendshapes(name=["browInnerUp", "browOuterUpLeft", "tongueOut"], weight=[0.5, 0.25, 1]))
         self.check(self.step(0.1), 0.45, 0.3)
+        wait(lambda: self.lacking, "a word on blendshapes that the face lacks")
+        self.send("blendshapes", Blendshapes(name=["tongueOut"], weight=[1]))
         self.send("blendshapes", Blendshapes(name=["browInnerUp", "browOuterUpLeft"], weight=[1, 1]))
         self.check(self.step(0.1), 1, 0.6)
+        self.assertEqual(len(self.lacking), 1)
 
     def tip(self):
         """Height of the tip at the latest frame [m]."""

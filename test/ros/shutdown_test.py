@@ -123,6 +123,11 @@ class Shutdown(unittest.TestCase):
         node.face.wait_until_ready()
         call_in_vain(rospy.ServiceProxy("/loading/load_scene", LoadScene), LARGE, "", LONG)
         wait(node.programs, "the bake of the other scene")
+        # the present face goes on meanwhile, and takes commands
+        time_before = node.face.state.time
+        node.face.command(lift=0.5)
+        wait(lambda: node.face.state.time > time_before + 0.05 and abs(node.face.state.activation[0] - 0.5) < 1e-3, "the present face")
+        self.assertTrue(node.programs(), "the other scene is still being made")
         self.end(node, "loads another scene")
 
 

@@ -1,0 +1,46 @@
+#pragma once
+
+#include "frontalis/physics/number.hpp"
+#include "frontalis/solver/solver.hpp"
+
+namespace frontalis
+{
+
+/// Forces of tissue on bones at one moment, in the local frame. Nodes count by their elastic, fibre and contact forces.
+struct BoneForces
+{
+  using Vector = physics::Vec3<double>;
+
+  BoneForces(Solver& solver, const Model& model);
+
+  /// Adds a force [N] and its moment [N m] about the local frame's origin as the bone carries it. Bone -1 stands still.
+  void add(std::int32_t bone, const Vector& force, const Vector& moment);
+  /// Adds a force that acts at a point [m].
+  void add_at(std::int32_t bone, const Vector& at, const Vector& force);
+
+  RigidTransform pose_of(std::int32_t bone) const;
+  std::array<double, 3> rest_of(std::int32_t node) const
+  {
+    return rest_position(model, static_cast<std::size_t>(node));
+  }
+  Vector place_of(std::int32_t node) const;  ///< present position [m]
+  Vector force_of(std::int32_t node) const;  ///< of the tissue on what carries the node [N]
+  /// The normal of a constraint surface at a present point; zero where its field has no samples or too short a
+  /// gradient.
+  Vector normal_at(const ConstraintSurface& surface, const Vector& at) const;
+
+  const Model& model;
+  const EffectSet effects;
+  const std::vector<RigidTransform>& pose;  ///< per bone
+  std::vector<Reaction> sum;                ///< per bone
+
+private:
+  std::vector<std::array<double, 3>> internal_, displaced_;
+};
+
+/// Adds the forces of nodes that slide on surfaces of bones.
+void add_gliding_nodes(BoneForces& bones);
+/// Adds the forces of nodes that are attached at true boundaries.
+void add_attached_nodes(BoneForces& bones);
+
+}  // namespace frontalis
