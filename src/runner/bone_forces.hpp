@@ -6,14 +6,15 @@
 namespace frontalis
 {
 
-/// Forces of tissue on bones at one moment, in the local frame. Nodes count by their elastic, fibre and contact forces.
+/// Forces of tissue on bones at one moment, in the local frame. Nodes count by Solver::internal_forces().
 struct BoneForces
 {
   using Vector = physics::Vec3<double>;
 
   BoneForces(Solver& solver, const Model& model);
 
-  /// Adds a force [N] and its moment [N m] about the local frame's origin as the bone carries it. Bone -1 stands still.
+  /// Adds a force [N] and its moment [N m] about the point of the bone that rests at the origin of the local frame.
+  /// Forces on bone -1, which stands still, are left out.
   void add(std::int32_t bone, const Vector& force, const Vector& moment);
   /// Adds a force that acts at a point [m].
   void add_at(std::int32_t bone, const Vector& at, const Vector& force);

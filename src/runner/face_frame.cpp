@@ -36,8 +36,8 @@ std::array<double, 3> array_of(const Vector& v) { return { { v.x, v.y, v.z } }; 
 BodyFrame in_face_frame(const Model& model, const Reaction& local, const RigidTransform& pose)
 {
   const std::array<double, 3> origin = inverse(model.to_face).translation;
-  // Moves the reference point of the moment from the origin of the local frame to that of the face frame. Both are
-  // fixed to the body.
+  // Moves the reference point of the moment from the origin of the local frame to that of the face frame. Both points
+  // are fixed to the body.
   const Vector about_face = vector_of(local.moment) - cross(vector_of(pose.turned(origin)), vector_of(local.force));
   return { { model.to_face.turned(local.force), model.to_face.turned(array_of(about_face)) },
            motion_in_face(model, pose) };

@@ -7,8 +7,9 @@ namespace
 
 using Vector = BoneForces::Vector;
 
-/// The part of a force on a node that the surface carries: all of it along the normal, and across it what friction can
-/// hold. Without a normal all of it counts, as it would in equilibrium.
+/// The part of a force on a node that the surface carries: the whole component along the normal, and as much of the
+/// tangential component as friction can hold. Where there is no normal, the surface carries the whole force, as it
+/// would in equilibrium.
 Vector carried(const Vector& normal, double friction, const Vector& force)
 {
   if (dot(normal, normal) == 0)
