@@ -10,8 +10,8 @@ namespace cuda
 {
 
 /// Contact of tissue with itself in device memory. Kernels place the vertices before each step, find the forces of
-/// pairs of a vertex and a triangle, and change the velocities of nodes. When vertices have moved so far that one could
-/// touch a triangle with which it forms no pair, the same kernels also search for new pairs, in the course of two
+/// pairs of a vertex and a triangle, and change the velocities of nodes. When vertices have moved so far that a vertex
+/// could touch a triangle with which it forms no pair, the same kernels also search for new pairs, in the course of two
 /// steps.
 class DeviceTissueContact : public DevicePart
 {

@@ -135,7 +135,7 @@ struct StepArguments : physics::Kick<float>
   const Strip* strips;
   const uint2* slots;  ///< per StripSlot: node and palette entry
   std::uint32_t strip_count;
-  /// displacement [m] and inverse mass [1/kg], 0 for nodes that never move; u[first] is the present one
+  /// displacement [m] and inverse mass [1/kg], 0 for nodes that never move; u[first] has the present values
   float4* u[2];
   float* v[3];  ///< velocity [m/s]
   /// inverse mass for the frequency bound [1/kg], 0 for held nodes; null: the inverse mass in u

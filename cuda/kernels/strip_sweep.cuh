@@ -89,8 +89,8 @@ struct StripVoxel : ElementVoxel<With>
   __device__ __forceinline__ float stiffness_now(const Kinematics& k) const { return physics::stiffness_now(*this, k); }
 };
 
-/// What a voxel with this palette entry adds to the neo-Hookean stress. The entries of added voxels are the first ones
-/// after entry 0.
+/// What a voxel with this palette entry adds to the neo-Hookean stress. The entries after entry 0 begin with those of
+/// the added voxels.
 template <Effects With>
 __device__ __forceinline__ AddedStress fetch_added(const StepArguments& g, std::uint32_t palette)
 {

@@ -132,8 +132,8 @@ __device__ __forceinline__ void sort_triangle(const TissueContactArguments& c, s
 }
 
 /// The triangle nearest to a vertex among those that it may touch and that do not adjoin the triangle `but`; -1: none.
-/// Of triangles at the same distance the one with the lowest index is taken, so that the order in a bucket does not
-/// matter.
+/// Of triangles at the same distance, the triangle with the lowest index is taken, so that the order in a bucket does
+/// not matter.
 __device__ __forceinline__ std::int32_t nearest_triangle(const TouchView& view, std::int32_t p, std::int32_t but)
 {
   const TissueContactArguments& c = view.c;

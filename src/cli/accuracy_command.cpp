@@ -65,8 +65,8 @@ AccuracyProfile standard_profile(const Scene& scene, bool chosen)
   return scene.accuracy;
 }
 
-// The activations of the chosen expression or else of the model's first one. If the model has no expressions: 0.75 for
-// all muscles.
+// The activations of the chosen expression or else of the model's first expression. If the model has no expressions:
+// 0.75 for all muscles.
 std::vector<float> activation_of(const Model& model, const AccuracyOptions& options)
 {
   if (!options.expression.empty())

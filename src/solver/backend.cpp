@@ -16,7 +16,7 @@ std::string missing_of(const BackendDescription& backend)
   return backend.missing == nullptr ? std::string() : backend.missing();
 }
 
-// Makes a solver of the first backend that can run. If that is not the preferred one, a message tells why, once per
+// Makes a solver of the first backend that can run. If that is not the preferred backend, a message tells why, once per
 // process.
 std::unique_ptr<Solver> make_preferred(const std::shared_ptr<const Model>& model, const SolverSettings& settings)
 {

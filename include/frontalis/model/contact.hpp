@@ -27,7 +27,7 @@ struct Contact
   double spring = 0;              ///< stiffness of the spring to the body's place on its bone [N/m]
   double damping = 0;             ///< damping force divided by the body's velocity relative to that place [N s/m]
 
-  // The points of the tissue stand for the vertices of its surface; the bake merges close ones.
+  // The points of the tissue stand for the vertices of its surface; the bake merges vertices that are close together.
   std::vector<std::array<double, 3>> points;  ///< at rest, local [m]
   std::vector<double> area;                   ///< area of each point [m2]: the sum of its vertices' areas
   Binding binding;                            ///< one entry per point

@@ -59,9 +59,10 @@ struct Touch
 };
 
 /// Contact and Coulomb friction of a point inside a body (field.value < 0). `x`: position in the body's frame [m];
-/// `grip`: the one returned in the previous step or, when contact begins, an anchor at x with the forces that let_go()
-/// left; `stiffness`: of the point [N/m]; `friction`: Coulomb's coefficient; `response`: friction_response(). Friction
-/// needs this delay, because elastic bodies flutter where they slide if friction follows the normal force at once.
+/// `grip`: the grip that was returned in the previous step or, when contact begins, an anchor at x with the forces that
+/// let_go() left; `stiffness`: of the point [N/m]; `friction`: Coulomb's coefficient; `response`: friction_response().
+/// Friction needs this delay, because elastic bodies flutter where they slide if friction follows the normal force at
+/// once.
 ///
 /// The normal force is the gradient of 1/2 stiffness value^2, so that a frictionless body adds no energy. Friction is
 /// the tangential stiffness times the displacement from the anchor, returned to Coulomb's cone (Simo & Laursen, An

@@ -39,8 +39,8 @@ FRONTALIS_LAW bool level_plane(const FieldValue<T>& field, const T& level, Level
 }
 
 /// After a step, a sliding node is at most this distance [m] away from its tangent plane. A smaller error is halved in
-/// each step. Errors arise when the tangent plane of a node is replaced; removing one within a single step would add
-/// half the tissue's stiffness times the squared error to the energy and excite vibrations. The value keeps nodes
+/// each step. Errors arise when the tangent plane of a node is replaced; removing an error within a single step would
+/// add half the tissue's stiffness times the squared error to the energy and excite vibrations. The value keeps nodes
 /// within 5 um of their level, because a plane that is kept for some steps has an error too: plane_error and, where the
 /// curvature grows along the node's path, about as much again.
 constexpr double error_left = 3.5e-6;

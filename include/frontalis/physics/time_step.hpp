@@ -12,8 +12,8 @@ namespace physics
 /// 2 mu diag(d)) <= V/2 (lambda sum d + 2 mu max d), exact on cubes. `along_fibre` [Pa] is stiffness that fibres add in
 /// one direction.
 ///
-/// These bounds limit the highest frequency of the model. With k_e >= the largest eigenvalue of the stiffness K_e of
-/// voxel e, and lumped masses m_n,
+/// The bounds of all voxels together limit the highest frequency of the model. With k_e >= the largest eigenvalue of
+/// the stiffness K_e of voxel e, and lumped masses m_n,
 ///   x^T K x = sum_e x_e^T K_e x_e <= sum_e k_e |x_e|^2 = sum_n (sum of k_e over the voxels at n) |x_n|^2,
 /// so that
 ///   omega^2 <= max_n (sum of k_e over the voxels at n) / m_n,

@@ -75,7 +75,7 @@ struct RenderScene
   std::vector<RenderBall> balls;
 };
 
-/// A main light, which casts shadows, a weaker one without shadows, and light from everywhere. Directions are towards
+/// A main light, which casts shadows, a weaker light without shadows, and light from everywhere. Directions are towards
 /// the light, in the frame of the scene; a matt surface has its colour times the sum of the lights.
 struct Light
 {

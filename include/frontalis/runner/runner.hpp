@@ -82,7 +82,7 @@ public:
   /// within 0..1, nothing is changed and an Error names all of them.
   void set_activation(const std::map<std::string, double>& activation);
   /// Sets a named expression of the model or a sum of action units (named_controls.hpp): all activations, and the
-  /// motions of the bones that any of these move. Throws an Error that lists the existing names if one is unknown.
+  /// motions of the bones that any of these move. Throws an Error that lists the existing names if a name is unknown.
   void set_expression(const std::string& name);
   void set_action_units(const std::map<std::string, double>& intensities);
 

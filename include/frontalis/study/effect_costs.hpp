@@ -38,7 +38,7 @@ EffectCosts measure_effects(const std::shared_ptr<const Model>& model, const Sol
                             const StepTimer& timer);
 
 /// The cost of an effect that a fraction of the voxels has, or, for sliding and friction, a fraction of the nodes of
-/// one face.
+/// one side of the block.
 struct PresenceCost
 {
   Effect effect;

@@ -76,7 +76,7 @@ void hold_mirror_planes(Model& model);
 
 /// Triangulates point(s, t), with s and t from 0 to 1, in rows x columns rectangles. Leaves out triangles without area.
 TriangleMesh grid_mesh(int rows, int columns, const std::function<Point(double s, double t)>& point);
-/// Binds each point to the voxel that contains it, or otherwise to the nearest one.
+/// Binds each point to the voxel that contains it, or otherwise to the nearest voxel.
 Binding bind_points(const Model& model, const Vectors& points);
 /// Adds a pressure [Pa] that acts on a mesh against its normals.
 void add_pressure(Model& model, double pressure, const TriangleMesh& mesh);

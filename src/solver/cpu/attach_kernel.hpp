@@ -6,7 +6,7 @@ namespace frontalis
 {
 
 /// Number of masters of attached nodes that are processed together, one per lane. If fewer are left, the other lanes
-/// are copies of the first one.
+/// are copies of the first lane.
 constexpr int attach_width = 16;
 
 /// Level sets of one node per lane, linearised: at displacement u a node has the level gradient . u + level [m].

@@ -118,10 +118,10 @@ struct AttachKernelBody
     scatter(row.node, velocity, g.v);
   }
 
-  // Finds the velocities that satisfy the constraints and are nearest to the unconstrained ones in the mass-weighted
-  // norm. Let m be the mass of a master and of the nodes that it holds, H the momentum of these nodes less m times the
-  // master's velocity v, a and q the inertia and momentum of the nodes that slide with the master, and g the gradient
-  // of its level. Then v changes by the solution of (m + a g g^T) change = H + (q - a g . v) g.
+  // Finds the velocities that satisfy the constraints and are nearest to the unconstrained velocities in the
+  // mass-weighted norm. Let m be the mass of a master and of the nodes that it holds, H the momentum of these nodes
+  // less m times the master's velocity v, a and q the inertia and momentum of the nodes that slide with the master, and
+  // g the gradient of its level. Then v changes by the solution of (m + a g g^T) change = H + (q - a g . v) g.
   static void process(const Arguments& g, MasterBlock<Real>& b)
   {
     Planes& planes = b.planes;

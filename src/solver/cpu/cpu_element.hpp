@@ -307,7 +307,7 @@ struct CpuElement
       }
     }
   }
-  // This function is not inlined, so that the code for whole voxels stays unchanged.
+  // This function is not inlined, so that the compiler generates the same code for whole voxels as without it.
   template <Stabilisation Form>
   static __attribute__((noinline)) void add_cut_forces(const VoxelsOf<Form>& at, Real* below, Real* above,
                                                        const std::int32_t* base)

@@ -10,7 +10,7 @@ namespace frontalis
 constexpr int touch_width = 16;
 
 /// Vertices of surfaces that touch each other, and how they follow the nodes of their voxels. Lanes beyond the last
-/// vertex are copies of the first one.
+/// vertex are copies of the first vertex.
 template <class Real>
 struct VertexBlock
 {
@@ -43,7 +43,7 @@ struct PairVertices
   std::int32_t vertex[4][touch_width];  ///< the pair's vertex, and the triangle's corners
   std::int32_t triangle[touch_width];   ///< -1: the lane has no pair
 };
-/// The other values of these pairs (physics/surface_touch.hpp). Lanes beyond the last pair are copies of the first one
+/// The other values of these pairs (physics/surface_touch.hpp). Lanes beyond the last pair are copies of the first pair
 /// without stiffness.
 template <class Real>
 struct PairBlock

@@ -19,7 +19,7 @@ public:
 
   /// Starts a new ledger at the present state.
   void open(double time, double dt);
-  /// Finds the present energies. `dt` [s]: length of the latest step, or of the next one if no step has been made.
+  /// Finds the present energies. `dt` [s]: length of the latest step, or of the next step if no step has been made.
   EnergyLedger balance(double time, double dt);
   void effects_switched() { loads_.run(conditions_.running); }
   void list_arrays(ArrayList& list) { loads_.list_arrays(list); }

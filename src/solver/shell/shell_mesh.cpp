@@ -59,8 +59,8 @@ Matrix inverse(const Matrix& a)
 // precision.
 constexpr double coordinate_rounding = 1e-5;
 
-// Returns the positions of a shell's vertices that follow from the voxels at rest. Where such a position differs from
-// the one in Shell::surface by rounding errors only, the one in Shell::surface is returned.
+// Returns the positions of a shell's vertices that follow from the voxels at rest. Where such a position differs by
+// rounding errors only from the vertex of Shell::surface, the position of that vertex is returned.
 std::vector<Vector> carried_vertices(const Model& model, const Shell& shell)
 {
   std::vector<Vector> places;

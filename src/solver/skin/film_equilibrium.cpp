@@ -15,7 +15,7 @@ using Vector = physics::Vec3<double>;
 
 // Edges longer than this fraction of the wavelength do not resolve it.
 constexpr double longest_edge = 1.0 / 3;
-// Heights are computed where the film's largest compression is at least this fraction of the critical one.
+// Heights are computed where the film's largest compression is at least this fraction of the critical strain.
 constexpr double near_critical = 0.5;
 constexpr int most_iterations = 40;
 // The solution is found if an iteration lowers the energy by less than this fraction.

@@ -19,7 +19,7 @@ constexpr std::int64_t longest_valid = 2000;
 constexpr std::int64_t shortest_valid = 200;
 constexpr float activation_allowed = 0.1F;  // change of a muscle's activation since the search
 constexpr double growth_allowed = 1.02;     // allowed growth of the squared frequency bound at nodes since the search
-// A search starts from the mode of the previous one. The first search starts from random numbers and needs more
+// A search starts from the mode of the previous search. The first search starts from random numbers and needs more
 // iterations.
 constexpr int iterations = 16;
 constexpr int first_iterations = 300;

@@ -15,10 +15,10 @@ namespace frontalis
 
 /// Nodes whose motion follows that of another node (AttachedNode), and the joints of flaps (Model::Joint), whose two
 /// nodes move as one. After the free update of a step, a master and the nodes that follow it get those velocities that
-/// the constraints allow and that are nearest to the updated ones in the mass-weighted norm (Gauss's principle). Thus
-/// the nodes' masses, and forces of any kind on them, act on the master. Constraints at surfaces that stand still do no
-/// work. No frequency of the model rises, because constraints lower Rayleigh quotients, so that the bounds of the time
-/// step remain valid. Each group of a master and its nodes is computed by itself, in a fixed order. AttachedBlocks
+/// the constraints allow and that are nearest to the updated velocities in the mass-weighted norm (Gauss's principle).
+/// Thus the nodes' masses, and forces of any kind on them, act on the master. Constraints at surfaces that stand still
+/// do no work. No frequency of the model rises, because constraints lower Rayleigh quotients, so that the bounds of the
+/// time step remain valid. Each group of a master and its nodes is computed by itself, in a fixed order. AttachedBlocks
 /// computes the groups at surfaces that stand still.
 template <class Real>
 class AttachedNodes : public NodePart<Real>

@@ -22,7 +22,7 @@ public:
   /// Whether a bone's velocity jumps at the start of this motion, by more than 0.5 % of a voxel per step. That is about
   /// 1 % of the speed of sound, because waves cross about half a voxel in a safe step.
   bool jumps(const Poses& from, const Poses& to, double seconds, double step) const;
-  /// Records a motion that has started, with which jumps() compares the next one.
+  /// Records a motion that has started, with which jumps() compares the next motion.
   void moved(const Poses& from, double seconds);
   void archive(ByteArchive& archive) { archive(before_)(seconds_); }
 

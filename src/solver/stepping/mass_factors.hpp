@@ -15,7 +15,7 @@ struct ScaledVoxel
 };
 
 /// Returns a factor on each voxel's mass with which the chosen voxels allow the time step of the other voxels, or the
-/// requested one; empty if no mass changes. A chosen voxel adds to each of its nodes the mass that the voxel's
+/// requested time step; empty if no mass changes. A chosen voxel adds to each of its nodes the mass that the voxel's
 /// stiffness requires there (physics/time_step.hpp). `corner_stiffness`, `held`: as in Discretisation.
 std::vector<float> selective_mass_factors(const Model& model, const std::vector<ScaledVoxel>& voxels,
                                           const std::vector<std::array<float, 8>>& corner_stiffness,

@@ -53,7 +53,7 @@ public:
   /// The next plan of a motion that ends after `remaining` [s], with steps of at most `longest` [s].
   Choice choose(double remaining, double longest, const BackendTraits& backend) const;
 
-  /// Records the largest bound that a backend found in the latest plan or in the one before.
+  /// Records the largest bound that a backend found in the latest plan or in the plan before it.
   void observe(double frequency_squared, int steps);
   /// Whether a muscle is switched on or off between these activations. If so, the controller becomes cautious, because
   /// the muscle's voxels stiffen at once, and the voxels that it pulls stiffen a little later.
