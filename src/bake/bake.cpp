@@ -139,7 +139,7 @@ Model bake(const Scene& scene, BakeReport* report, const BakeProgress& progress)
   monitor.begin("layers");
   add_thin_layers(volumes, frame, model, monitor);
 
-  turn_families(scene, surfaces, frame, model, monitor);
+  turn_families(scene, surfaces, fibres, frame, model, monitor);
 
   monitor.begin("skin");
   for (const auto bind : { bind_surfaces, bind_contacts, bind_self_contacts, bind_shells })

@@ -86,9 +86,17 @@ void measure_faces(FacesOptions& options)
     running = name;
     const auto known = people.expressions.find(name);
     const PublishedExpression nothing;
-    const auto found =
-        measure_expression(model, name, known == people.expressions.end() ? nothing : known->second, options.settings);
-    rows.insert(rows.end(), found.begin(), found.end());
+    try
+    {
+      const auto found = measure_expression(model, name, known == people.expressions.end() ? nothing : known->second,
+                                            options.settings);
+      rows.insert(rows.end(), found.begin(), found.end());
+    }
+    catch (const Error& error)
+    {
+      // One motion that the guard stops does not lose the figures of the others.
+      faults.push_back(fmt::format("{}: {}", name, error.what()));
+    }
   }
   progress.clear();
   fmt::print("{}", faces_table(rows, options.all_landmarks).text());

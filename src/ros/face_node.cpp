@@ -126,6 +126,7 @@ void FaceNode::replace_face(const FaceParameters& parameters)
   // ROS waits for the callback of a long ~step before it lets this object be destroyed.
   settings.ends_steps = [this] { return stopping_ || ros::isShuttingDown(); };
   settings.wants_bone_forces = [this] { return publisher_.shows_bone_forces(); };
+  settings.on_progress = [this, face](const Frame& frame) { on_progress(frame, face); };
   const auto made =
       std::make_shared<Runner>(model, settings, [this, face](const Frame& frame) { on_frame(frame, face); });
   const std::string frame_name = parameters.face_id.empty() ? model->face_frame : "face_" + parameters.face_id;
@@ -207,6 +208,13 @@ void FaceNode::on_frame(const Frame& frame, std::uint64_t face)
     ++frames_dropped_;
     ROS_ERROR_STREAM_THROTTLE(5, name_ << ": frame " << frame_.sequence << " is not finite and was not published");
   }
+}
+
+void FaceNode::on_progress(const Frame& frame, std::uint64_t face)
+{
+  const std::lock_guard<std::mutex> lock(frame_mutex_);
+  if (face == present_face_)
+    publisher_.publish_state(frame, ros::Time::now(), paused_);
 }
 
 // logs the real-time factor once it has settled

@@ -212,13 +212,7 @@ bool FacePublisher::publish(const Frame& frame, const ros::Time& stamp, bool pau
     }
     muscles_.publish(muscles);
   }
-  state_.publish(face_frame_, stamp,
-                 [&](auto& state)
-                 {
-                   to_state(*model_, frame, state);
-                   state.paused = paused;
-                   state.backend = backend_;
-                 });
+  publish_state(frame, stamp, paused);
   const auto publish_wrench = [&](std::size_t entry, const BodyFrame& body)
   {
     const BodyShape& shape = shapes_[entry];
@@ -300,6 +294,17 @@ void FacePublisher::publish_caption(const std::string& text, const std::string& 
   marker.color.r = marker.color.g = marker.color.b = 0.85f;
   marker.color.a = 1;
   caption_.publish(marker);
+}
+
+void FacePublisher::publish_state(const Frame& frame, const ros::Time& stamp, bool paused)
+{
+  state_.publish(face_frame_, stamp,
+                 [&](auto& state)
+                 {
+                   to_state(*model_, frame, state);
+                   state.paused = paused;
+                   state.backend = backend_;
+                 });
 }
 
 void FacePublisher::publish_fault(const std::string& message, const ros::Time& stamp)

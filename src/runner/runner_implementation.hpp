@@ -64,6 +64,7 @@ struct Runner::Implementation
   Clock::time_point deadline{};  ///< wall time at which the present frame ends
   Clock::time_point start = Clock::now();
   Clock::time_point last_monitor{};
+  Clock::time_point last_told{};  // when time and activations were last handed out
   Profile last_profile;  ///< of the solver at the latest renewal of the monitor
   std::thread thread;
 
@@ -78,6 +79,8 @@ struct Runner::Implementation
   Controls controls_after(double seconds) const;
   void fail(const std::string& reason);
   void measure_cost();
+  // Writes the present time, activations and counts of steps into the frame.
+  void note_progress();
   void make_frame(bool renew_monitor);
   void publish(bool renew_monitor = false, bool hands_out = true);
   void run_frame();

@@ -15,7 +15,11 @@ namespace
 
 // Time steps per slice. There are few enough that requests do not wait long, and enough that reading the clock and
 // locking the mutex once per slice cost little.
-constexpr int steps_per_slice = 32;
+constexpr int steps_per_slice = 16;
+// Slices per frame at the least, so that a face that steps slowly does not spend its time on frames.
+constexpr int least_slices = 2;
+// Wall time after a frame before progress is told: somewhat less than a fiftieth of a second.
+constexpr std::chrono::milliseconds progress_period(18);
 // Wall time between two computations of the energies and volume ratios.
 constexpr std::chrono::seconds monitor_period(1);
 
@@ -81,6 +85,16 @@ void Runner::Implementation::measure_cost()
     frame.solver_bytes += allocation.bytes;
 }
 
+void Runner::Implementation::note_progress()
+{
+  last_told = Clock::now();
+  frame.time = time();
+  frame.wall_time = std::chrono::duration<double>(last_told - start).count();
+  frame.time_step = solver->time_step();
+  frame.steps = solver->profile().steps;
+  frame.activation = solver->activation();
+}
+
 void Runner::Implementation::make_frame(bool renew_monitor)
 {
   const auto now = Clock::now();
@@ -119,11 +133,7 @@ void Runner::Implementation::make_frame(bool renew_monitor)
     else
       fail("the skin is no longer finite");
   }
-  frame.time = time();
-  frame.wall_time = std::chrono::duration<double>(now - start).count();
-  frame.time_step = solver->time_step();
-  frame.steps = solver->profile().steps;
-  frame.activation = solver->activation();
+  note_progress();
   frame.bodies = bodies_in_face_frame(*solver, *model);
   frame.has_bone_forces = settings.wants_bone_forces && settings.wants_bone_forces();
   frame.bones = bones_in_face_frame(*solver, *model, frame.has_bone_forces);
@@ -170,8 +180,13 @@ void Runner::Implementation::run_frame()
   const double end = settings.pace == Pace::fastest
                          ? time() + 1e9
                          : time() + clock.behind(Clock::now(), time(), 2 * period()) + period();
-  while (!frame.failed && time() < end && Clock::now() < deadline)
+  for (int slices = 0; !frame.failed && time() < end && (slices < least_slices || Clock::now() < deadline); ++slices)
   {
+    if (slices > 0 && settings.on_progress && Clock::now() - last_told > progress_period)
+    {
+      note_progress();
+      settings.on_progress(frame);
+    }
     const double seconds = std::min(end - time(), slice());
     Controls controls;
     {

@@ -130,6 +130,8 @@ void add_anatomy(const Scene& scene, Content& content)
   {
     content.line("material", material.name, material.law, material.density, material.parameters, material.families[0],
                  material.families[1], material.along);
+    if (!material.about.empty())
+      content.add(material.about, material.angle);
     for (const auto& term : material.viscosity)
       content.add(term.share, term.time);
   }

@@ -62,14 +62,25 @@ double read_parameter(const physics::Parameter& parameter, Mapping& mapping)
   return value;
 }
 
-// Reads one fibre direction, or the directions of two fibre families, which may follow a surface.
+// Reads one fibre direction, or the directions of two fibre families, which may follow a surface and a muscle.
 void read_directions(int count, Mapping& mapping, const SceneNames& names, SceneMaterial& material)
 {
   if (count == 1)
     material.families[0] = mapping.required("fibre", "a direction").direction({ 1, 0, 0 });
   if (count != 2)
     return;
-  read_families(mapping.required("families", "two directions"), material.families);
+  const Node families = mapping.required("families", "two directions, or {about: MUSCLE, angle: ANGLE}");
+  if (families.is_mapping())
+  {
+    Mapping about(families);
+    material.about = about.required("about", "a muscle").text();  // muscles are read later: see check_tissues()
+    material.angle = about.required("angle", "an angle from 0 to 90 degrees")
+                         .number(Dimension::angle, Bound{ 0, 0.5 * 3.14159265358979323846, true, true }, 0);
+    material.along =
+        mapping.required("along", "the surface to which the fibres are parallel").reference(names.surfaces);
+    return;
+  }
+  read_families(families, material.families);
   if (const Node along = mapping.optional("along"); along.given())
   {
     material.along = along.reference(names.surfaces);
@@ -114,6 +125,7 @@ void read_materials(const Node& tissues, const Node& node, Scene& scene, SceneNa
       return mapping.ignore_rest();
     read_law(*known, entry, mapping, names, material);
     read_viscosity(mapping.optional("viscosity"), material.viscosity);
+    material.tension = mapping.optional("tension").number(Dimension::pressure, positive, 0);
     material.density = mapping.required("density", "a density greater than 0").number(Dimension::density, positive, 0);
   };
   std::vector<SceneMaterial> library;

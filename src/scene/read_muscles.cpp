@@ -98,6 +98,27 @@ void read_shared(Mapping& mapping, const SceneNames& names, SceneMuscle& muscle,
   muscle.tension_length = mapping.optional("tension_length").boolean(muscle.tension_length);
 }
 
+/// Reads `tension_of`: the muscle stands for the tension that a material has at rest, whatever the fibres' length.
+void read_tension(Mapping& mapping, const Scene& scene, const SceneNames& names, SceneMuscle& muscle)
+{
+  const Node of = mapping.optional("tension_of");
+  if (!of.given())
+    return;
+  for (const char* key : { "stress_reference", "cross_section", "passive", "tension_length", "tone" })
+    if (mapping.has(key))
+      of.fault("stands beside '{}'; the material determines the stress", key);
+  const std::string name = of.reference(names.materials);
+  const auto material = std::find_if(scene.materials.begin(), scene.materials.end(),
+                                     [&](const SceneMaterial& m) { return m.name == name; });
+  if (material == scene.materials.end())
+    return;
+  if (material->tension == 0)
+    of.fault("material '{}' has no 'tension'", name);
+  muscle.stress_reference = material->tension;
+  muscle.tension_length = false;
+  muscle.tone = 1;
+}
+
 /// Finds the volume with the muscle's name. If there is none, makes a volume from the surface with that name.
 void find_volume(const Node& key, const std::string& material, SceneMuscle& muscle, Scene& scene, SceneNames& names)
 {
@@ -199,6 +220,7 @@ void read_muscles(const Node& node, Scene& scene, SceneNames& names)
         muscle.volume = volume.reference(names.volumes);
       read_fibres(mapping, names, muscle);
       read_shared(mapping, names, muscle, materials[one]);
+      read_tension(mapping, scene, names, muscle);
       if (!volume.given() && entry.is_mapping())
         find_volume(volume, materials[one], muscle, scene, names);
       if (entry.faulty())

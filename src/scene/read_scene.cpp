@@ -40,6 +40,16 @@ void leave_out_unused(Scene& scene)
   all.erase(std::remove_if(all.begin(), all.end(), unused), all.end());
 }
 
+// Checks the muscles that materials name. Materials are read before muscles, because muscles name materials too.
+void check_tissues(const Scene& scene, const Node& tissues, const SceneNames& names)
+{
+  for (const SceneMaterial& material : scene.materials)
+    if (!material.about.empty())
+      Node("materials." + material.name + ".families.about", material.of_library ? tissues.line() : material.line,
+           tissues.context())
+          .check_known(material.about, names.muscles);
+}
+
 void read_root(const Node& root, const SceneOptions& options, Scene& scene)
 {
   Mapping mapping(root);
@@ -73,6 +83,7 @@ void read_root(const Node& root, const SceneOptions& options, Scene& scene)
   read_expressions(action_units, mapping.optional("expressions"), scene, names);
   read_demo(mapping.optional("demo"), scene, names);
   leave_out_unused(scene);
+  check_tissues(scene, tissues, names);
 }
 
 }  // namespace

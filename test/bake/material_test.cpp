@@ -159,3 +159,50 @@ TEST(Materials, FibreFamiliesFollowASurface)
     }
   }
 }
+
+// A sphere whose pole is off the fibres of a muscle: its families lie on either side of the fibres, in the surface.
+TEST(Materials, FibreFamiliesLieAboutTheFibresOfAMuscle)
+{
+  constexpr double angle = 0.6;
+  Scene scene = plain_scene(1e-3);
+  scene.surfaces = { sphere_surface("ball", { 0, 0, 0 }, 8e-3, 0.5e-3) };
+  SceneMaterial skin = of_law("holzapfel", { { "shear", 5e3 }, { "k1", 6e3 }, { "k2", 0.8 }, { "dispersion", 0.1 } });
+  skin.about = "pull";
+  skin.angle = angle;
+  skin.along = "ball";
+  scene.materials = { skin };
+  scene.volumes = { volume_inside("tissue", { "ball" }, "stuff", true) };
+  SceneMuscle pull;
+  pull.name = "pull";
+  pull.volume = "tissue";
+  pull.fibre = { 0, 1, 0 };
+  scene.muscles = { pull };
+  scene.skin.surface = "ball";
+  const Model model = bake(scene);
+  ASSERT_EQ(model.material_directions.size(), model.voxels.size());
+  std::size_t checked = 0;
+  for (std::size_t e = 0; e < model.voxels.size(); ++e)
+  {
+    const auto& d = model.material_directions[e];
+    Eigen::Matrix3d to_scene;
+    Vector3 local{};
+    for (int a = 0; a < 3; ++a)
+    {
+      local[a] = (model.voxels[e][a] + 0.5) * model.spacing[a];
+      for (int b = 0; b < 3; ++b)
+        to_scene(a, b) = model.to_scene.rotation[3 * a + b];
+    }
+    const Vector3d first = to_scene * Vector3d(d[0], d[1], d[2]), second = to_scene * Vector3d(d[3], d[4], d[5]);
+    const Vector3d out = to_vector(transformed(model.to_scene, local)).normalized();
+    EXPECT_NEAR(first.norm(), 1, 1e-6);
+    EXPECT_NEAR(first.dot(second), std::cos(2 * angle), 1e-5);
+    // the error of the facets' normals dominates near the centre, and near the poles there are hardly any fibres
+    if (to_vector(transformed(model.to_scene, local)).norm() < 4e-3 || std::abs(out[1]) > 0.7)
+      continue;
+    const Vector3d middle = (first + second).normalized(), fibre = Vector3d(0, 1, 0) - out[1] * out;
+    EXPECT_NEAR(middle.dot(fibre.normalized()), 1, 0.01);
+    EXPECT_NEAR(middle.dot(out), 0, 0.07);
+    ++checked;
+  }
+  EXPECT_GT(checked, 500u);
+}

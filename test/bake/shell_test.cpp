@@ -66,6 +66,27 @@ TEST(BakeShell, covers_the_surface_at_the_depth_of_the_layer_with_edges_of_a_vox
   }
 }
 
+// A slit through the ball: no triangle holds its sides together.
+TEST(BakeShell, ends_at_slits)
+{
+  constexpr double cut = 0.2e-3;
+  Scene scene = ball_in_shells(false, true);
+  scene.surfaces.push_back(box_surface("cut", { cut + 20e-3, 0, 0 }, { 40e-3, 60e-3, 60e-3 }));
+  scene.volumes[0].slits = { "cut" };
+  const Model model = bake(scene);
+  ASSERT_EQ(model.shells.size(), 1U);
+  std::array<std::size_t, 2> on_side{};
+  for (const auto& t : model.shells[0].surface.triangles)
+  {
+    std::size_t beyond = 0;
+    for (const std::int32_t v : t)
+      beyond += transformed(model.to_scene, model.shells[0].surface.vertices[v])[0] > cut ? 1 : 0;
+    ASSERT_TRUE(beyond == 0 || beyond == 3);
+    ++on_side[beyond / 3];
+  }
+  EXPECT_GT(std::min(on_side[0], on_side[1]), 300u);
+}
+
 // Corneum and dermis, as published, become a plate of 1.25 mm and 0.883 MPa, whose middle is near the stiff corneum.
 TEST(BakeShell, layers_on_each_other_become_one_plate)
 {

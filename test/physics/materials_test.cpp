@@ -76,7 +76,7 @@ TEST_P(EveryLaw, ItsDescriptionIsWhole)
   EXPECT_EQ(law_named(description.name), GetParam()) << "two laws have one name";
   EXPECT_GE(description.count(), 1);
   EXPECT_TRUE(description.directions >= 0 && description.directions <= 2);
-  std::set<std::string> keys{ "law", "density", "poisson", "viscosity", "fibre", "families", "along" };
+  std::set<std::string> keys{ "law", "density", "poisson", "viscosity", "fibre", "families", "along", "tension" };
   for (const Parameter& parameter : description)
   {
     EXPECT_TRUE(keys.insert(parameter.key).second) << parameter.key << " means something else";

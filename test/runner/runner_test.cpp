@@ -1,7 +1,7 @@
 #include "frontalis/runner/runner.hpp"
 
-#include "block_model.hpp"
 #include "frontalis/error.hpp"
+#include "runner/bar_face.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,61 +12,13 @@
 #include <thread>
 
 using namespace frontalis;
+using namespace frontalis::test;
 using namespace std::chrono_literals;
 
 namespace
 {
 
-// a bar along x, fixed at x = 0, with one muscle along it; the skin is its free end
-std::shared_ptr<const Model> bar()
-{
-  test::BlockSettings s;
-  s.voxels = { { 6, 2, 2 } };
-  s.damping = 500;
-  Model model = test::block_model(s);
-  Muscle muscle;
-  muscle.name = "puller";
-  test::add_muscle(model, { { 1, 0, 0 } }, muscle);
-  for (std::size_t n = 0; n < model.nodes.size(); ++n)
-    if (model.nodes[n][0] == 0)
-      model.rigid.push_back({ static_cast<std::int32_t>(n), 0 });
-  model.bones = { "jaw" };
-  model.skin.vertices = { { { 6e-3, 0, 0 } }, { { 6e-3, 2e-3, 0 } }, { { 6e-3, 2e-3, 2e-3 } } };
-  model.skin.triangles = { { { 0, 1, 2 } } };
-  model.skin_binding.voxel = { 5, 11, 23 };
-  model.skin_binding.coordinates = { { { 1, 0, 0 } }, { { 1, 1, 0 } }, { { 1, 1, 1 } } };
-  model.landmarks = { "tip" };
-  model.landmark_positions = { { { 6e-3, 0, 0 } } };
-  model.landmark_binding.voxel = { 5 };
-  model.landmark_binding.coordinates = { { { 1, 0, 0 } } };
-  model.expressions.push_back({ "pull", { { 0, 0.8f } } });
-  // local x is z of the face frame
-  model.to_face.rotation = { { 0, 1, 0, 0, 0, 1, 1, 0, 0 } };
-  model.to_face.translation = { { 0, 0, 1 } };
-  return std::make_shared<const Model>(model);
-}
-
 double tip(const Frame& frame) { return frame.skin.landmarks[0][2] - 1; }
-
-RunnerSettings settings(Pace pace, double frame_rate = 100) { return { { "cpu", 1, 0 }, pace, frame_rate }; }
-
-/// The bar with such a high time scaling that any machine can run it in real time.
-std::shared_ptr<const Model> fast_bar()
-{
-  Model model = *bar();
-  model.time_scaling = 100;
-  return std::make_shared<const Model>(model);
-}
-
-/// Waits until a condition holds. Returns false if it does not hold within a minute.
-template <typename Condition>
-bool comes_true(const Condition& condition)
-{
-  for (const auto end = std::chrono::steady_clock::now() + 60s; !condition(); std::this_thread::sleep_for(1ms))
-    if (std::chrono::steady_clock::now() > end)
-      return false;
-  return true;
-}
 
 /// Calls step() with a million seconds, in a thread of its own. The step has begun when the constructor returns.
 class LongStep
@@ -218,46 +170,6 @@ TEST(Runner, LockStepIsRepeatable)
   }
 }
 
-TEST(Runner, RealTimeKeepsPaceWithTheClock)
-{
-  constexpr double rate = 50;
-  std::mutex mutex;
-  std::vector<Frame> frames;
-  {
-    Runner runner(fast_bar(), settings(Pace::real_time, rate),
-                  [&](const Frame& frame)
-                  {
-                    const std::lock_guard<std::mutex> lock(mutex);
-                    frames.push_back(frame);
-                  });
-    EXPECT_TRUE(comes_true(
-        [&]
-        {
-          const std::lock_guard<std::mutex> lock(mutex);
-          return !frames.empty() && frames.back().wall_time > 1.5 && frames.back().real_time_factor > 0.5;
-        }));
-  }
-  for (std::size_t f = 0; f < frames.size(); ++f)
-  {
-    // the simulation is ahead of the clock by no more than the frame that it computes
-    EXPECT_LE(frames[f].time, frames[f].wall_time + 1 / rate + 1e-6);
-    EXPECT_LE(static_cast<double>(f), frames[f].wall_time * rate + 1);
-    if (f > 0)
-    {
-      EXPECT_GE(frames[f].time, frames[f - 1].time);
-    }
-  }
-  // A frame makes up for at most two late frames.
-  EXPECT_LE(frames.back().real_time_factor, 1 + 3 / rate + 1e-6);
-}
-
-TEST(Runner, FastestRunsAheadOfTheClock)
-{
-  std::atomic<double> factor{ 0 };
-  Runner runner(fast_bar(), settings(Pace::fastest), [&](const Frame& frame) { factor = frame.real_time_factor; });
-  EXPECT_TRUE(comes_true([&] { return factor > 1.5; }));
-}
-
 TEST(Runner, PauseStopsTimeAndResetRewinds)
 {
   std::atomic<double> time{ 0 };
@@ -383,18 +295,4 @@ TEST(Runner, FrameRatesThatMakeNoSenseAreRefused)
 {
   for (const double rate : { 1e-3, 1e9 })
     EXPECT_THROW(Runner(bar(), settings(Pace::real_time, rate), {}), Error);
-}
-
-TEST(Runner, TimeScalingPlaysTheSameClock)
-{
-  auto model = std::make_shared<Model>(*bar());
-  model->time_scaling = 4;
-  Runner runner(model, settings(Pace::lock_step), {});
-  // a small activation, because voxels that stiffen fast need shorter time steps
-  runner.set_activation({ { "puller", 0.2 } });
-  const Frame scaled = runner.step(0.04);
-  EXPECT_NEAR(scaled.time, 0.04, 1e-12);
-  Runner plain(bar(), settings(Pace::lock_step), {});
-  plain.set_activation({ { "puller", 0.2 } });
-  EXPECT_NEAR(static_cast<double>(scaled.steps), static_cast<double>(plain.step(0.04).steps) / 4, 0.1 * scaled.steps);
 }

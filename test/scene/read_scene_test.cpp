@@ -181,7 +181,7 @@ TEST(EveryKey, volumes_materials_and_layers)
   EXPECT_EQ(scene.volumes[1].priority, 1);
   EXPECT_EQ(scene.volumes[2].material, "");
 
-  ASSERT_EQ(scene.materials.size(), 2U);
+  ASSERT_EQ(scene.materials.size(), 3U);
   EXPECT_EQ(scene.materials[0].law, "neo_hookean");
   EXPECT_NEAR(scene.materials[0].parameters.at("young"), 81400, 1e-9);
   EXPECT_EQ(scene.materials[0].parameters.at("poisson"), 0.49);
@@ -192,6 +192,9 @@ TEST(EveryKey, volumes_materials_and_layers)
   EXPECT_NEAR(scene.materials[0].viscosity[0].time, 0.04, 1e-12);
   EXPECT_EQ(scene.materials[0].viscosity[1].time, 1);
   EXPECT_TRUE(scene.materials[1].viscosity.empty());
+  EXPECT_EQ(scene.materials[2].about + " " + scene.materials[2].along, "fibres box");
+  EXPECT_NEAR(scene.materials[2].angle, 0.6283185307179586, 1e-12);
+  EXPECT_EQ(scene.materials[2].tension, 8e3);
 
   ASSERT_EQ(scene.layers.size(), 2U);
   EXPECT_EQ(scene.layers[0].name, "outer");
@@ -204,7 +207,7 @@ TEST(EveryKey, volumes_materials_and_layers)
 TEST(EveryKey, ways_to_give_fibres)
 {
   const Scene& scene = every_key();
-  ASSERT_EQ(scene.muscles.size(), 5U);
+  ASSERT_EQ(scene.muscles.size(), 6U);
   EXPECT_FALSE(scene.muscles[0].origin.given() || scene.muscles[0].ring || scene.muscles[0].net);
   const SceneMuscle& ended = scene.muscles[2];
   expect_vector(ended.fibre, { 0, 0, 0 });
@@ -222,6 +225,8 @@ TEST(EveryKey, ways_to_give_fibres)
   expect_vector(net.points[15], { 0, -0.02, 0.01 });
   ASSERT_EQ(net.weights.size(), 16U);
   EXPECT_EQ(net.weights[15], 0.5);
+  EXPECT_EQ(scene.muscles[5].stress_reference * scene.muscles[5].tone, 8e3);
+  EXPECT_FALSE(scene.muscles[5].tension_length || scene.muscles[5].passive);
 }
 
 TEST(EveryKey, action_units_and_weakness)
@@ -257,7 +262,7 @@ TEST(EveryKey, action_units_and_weakness)
 TEST(EveryKey, muscles_and_expressions)
 {
   const Scene& scene = every_key();
-  ASSERT_EQ(scene.muscles.size(), 5U);
+  ASSERT_EQ(scene.muscles.size(), 6U);
   EXPECT_EQ(scene.muscles[0].volume, "fibres");
   expect_vector(scene.muscles[0].fibre, { 0, 0.6, 0.8 });
   EXPECT_EQ(scene.muscles[0].stress_reference, 5e6);

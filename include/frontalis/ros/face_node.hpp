@@ -52,6 +52,7 @@ private:
 
   // run in the runner's thread
   void on_frame(const Frame& frame, std::uint64_t face);
+  void on_progress(const Frame& frame, std::uint64_t face);
   void log_speed_once();
 
   // services

@@ -53,6 +53,9 @@ public:
   /// Publishes a frame. Returns false and publishes nothing if the skin is not finite. start() must have been called.
   bool publish(const Frame& frame, const ros::Time& stamp, bool paused);
 
+  /// Publishes ~state alone.
+  void publish_state(const Frame& frame, const ros::Time& stamp, bool paused);
+
   /// Fills in what ~probe answers about the skin vertex closest to a point.
   void probe(const SkinState& skin, const geometry_msgs::Point& point, Probe::Response& out) const;
 

@@ -60,6 +60,9 @@ struct RunnerSettings
   std::function<bool()> wants_displacements{};
   /// Called once per frame in the runner's thread. If it is not set or returns false, forces on bones are not computed.
   std::function<bool()> wants_bone_forces{};
+  /// Called in the runner's thread while it computes a frame, 55 times per second of wall time at the most. The frame
+  /// has the present time, activations and counts of steps; all else is as in the frame handed out last.
+  std::function<void(const Frame&)> on_progress{};
   /// Called after each slice of a step() in the runner's thread. If it returns true, the step ends as if cancel_step()
   /// had been called.
   std::function<bool()> ends_steps{};

@@ -30,6 +30,11 @@ struct SceneMaterial
   /// Surface that two fibre families follow: they are turned by the shortest rotation from their common normal to the
   /// surface's normal at the closest point. Empty: the directions are the same everywhere.
   std::string along;
+  /// Muscle about whose fibres the two families lie, parallel to the surface `along`: both at `angle` [rad] from the
+  /// fibres, on either side. Empty: `families` are given.
+  std::string about;
+  double angle = 0;
+  double tension = 0;       ///< stress at rest, along the fibres of each muscle with `tension_of` [Pa]
   bool of_library = false;  ///< whether it comes from the file `tissues`; left out if nothing uses it
   int line = 0;
 };

@@ -1,3 +1,5 @@
+#include "bake/fibres/fibres.hpp"
+#include "bake/messages.hpp"
 #include "bake/voxels/model_stages.hpp"
 
 namespace frontalis
@@ -13,6 +15,15 @@ Eigen::Quaterniond shortest_rotation(const Vector3d& from, const Vector3d& to, c
   if (from.dot(to) < -1 + 1e-9)
     return Eigen::Quaterniond(Eigen::AngleAxisd(pi, axis));
   return Eigen::Quaterniond::FromTwoVectors(from, to);
+}
+
+/// The directions at `angle` [rad] to both sides of the part of `fibre` that is perpendicular to `normal`.
+std::array<Vector3d, 2> families_about(const Vector3d& fibre, const Vector3d& normal, double angle)
+{
+  Vector3d along = fibre - fibre.dot(normal) * normal;
+  along = along.norm() > 1e-3 ? along.normalized() : normal.unitOrthogonal();
+  const Vector3d aside = std::sin(angle) * normal.cross(along);
+  return { std::cos(angle) * along + aside, std::cos(angle) * along - aside };
 }
 
 /// The material with the largest proportion in voxel e among those whose fibres follow a surface; -1 if there is none.
@@ -33,15 +44,19 @@ int main_material(const Scene& scene, const Model& model, std::size_t e)
 
 }  // namespace
 
-void turn_families(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,
-                   BakeMonitor& monitor)
+void turn_families(const Scene& scene, const PreparedSurfaces& surfaces, const std::vector<MuscleFibres>& fibres,
+                   const LocalFrame& frame, Model& model, BakeMonitor& monitor)
 {
   const std::size_t voxels = model.voxels.size();
   std::vector<const PreparedSurface*> along;
+  std::vector<const MuscleFibres*> about;
   for (const SceneMaterial& material : scene.materials)
-    along.push_back(material.along.empty()
-                        ? nullptr
-                        : &named_surface(surfaces, material.along, scene.file + ": material '" + material.name + "'"));
+  {
+    const std::string place = scene.file + ": material '" + material.name + "'";
+    along.push_back(material.along.empty() ? nullptr : &named_surface(surfaces, material.along, place));
+    about.push_back(material.about.empty() ? nullptr
+                                           : &fibres[index_of(scene.muscles, material.about, place, "muscle")]);
+  }
   std::vector<int> main(voxels);
   std::vector<Vector3d> normal(voxels, Vector3d::Zero());
   parallel_for(monitor, voxels, grain,
@@ -66,21 +81,27 @@ void turn_families(const Scene& scene, const PreparedSurfaces& surfaces, const L
   if (std::all_of(main.begin(), main.end(), [](int m) { return m < 0; }))
     return;
   model.material_directions.assign(voxels, {});
-  for (std::size_t e = 0; e < voxels; ++e)
-  {
-    const int m = main[e];
-    if (m < 0)
-      continue;
-    const Vector3d first = to_vector(scene.materials[m].families[0]);
-    const Vector3d from = std::copysign(1.0, agreement[m]) * across[m];
-    const Eigen::Quaterniond rotation = shortest_rotation(from, normal[e], first);
-    for (std::size_t family = 0; family < 2; ++family)
-    {
-      const Vector3d turned = rotation * to_vector(scene.materials[m].families[family]);
-      Eigen::Map<Eigen::Vector3f>(&model.material_directions[e][3 * family]) =
-          frame.turn(turned.normalized().eval()).cast<float>();
-    }
-  }
+  parallel_for(monitor, voxels, grain,
+               [&](std::size_t e)
+               {
+                 const int m = main[e];
+                 if (m < 0)
+                   return;
+                 std::array<Vector3d, 2> families;
+                 if (about[m] != nullptr)
+                   families =
+                       families_about(about[m]->at(frame.voxel_centre(model, e)), normal[e], scene.materials[m].angle);
+                 else
+                 {
+                   const auto& [first, second] = scene.materials[m].families;
+                   const Vector3d from = std::copysign(1.0, agreement[m]) * across[m];
+                   const Eigen::Quaterniond rotation = shortest_rotation(from, normal[e], to_vector(first));
+                   families = { rotation * to_vector(first), rotation * to_vector(second) };
+                 }
+                 for (std::size_t family = 0; family < 2; ++family)
+                   Eigen::Map<Eigen::Vector3f>(&model.material_directions[e][3 * family]) =
+                       frame.turn(families[family].normalized().eval()).cast<float>();
+               });
 }
 
 }  // namespace frontalis

@@ -118,12 +118,13 @@ void remove_islands(Model& model, BakeMonitor& monitor);
 /// volume of the layer is preserved.
 void add_thin_layers(const Volumes& volumes, const LocalFrame& frame, Model& model, BakeMonitor& monitor);
 
-/// Fills the model's directions of materials whose fibre families follow a surface. In each voxel the families are
-/// turned by the shortest rotation from the normal of their plane to the surface's normal at the point closest to the
-/// voxel's centre. The sign of the plane's normal is chosen to agree with the surface's normals in most voxels. In a
-/// voxel with several such materials, the one with the largest proportion is used.
-void turn_families(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,
-                   BakeMonitor& monitor);
+/// Fills the model's directions of materials whose fibre families follow a surface. Families about a muscle's fibres
+/// lie on either side of these in each voxel, parallel to the surface at the point closest to the voxel's centre.
+/// Others are turned by the shortest rotation from the normal of their plane to the surface's normal there. The sign of
+/// the plane's normal is chosen to agree with the surface's normals in most voxels. In a voxel with several such
+/// materials, the one with the largest proportion is used.
+void turn_families(const Scene& scene, const PreparedSurfaces& surfaces, const std::vector<MuscleFibres>& fibres,
+                   const LocalFrame& frame, Model& model, BakeMonitor& monitor);
 
 /// A mesh in local coordinates, and its vertices bound to voxels.
 struct BoundMesh

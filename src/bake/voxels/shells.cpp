@@ -36,6 +36,26 @@ void sink(TriangleMesh& mesh, double depth)
     mesh.vertices[v] = to_array(to_vector(mesh.vertices[v]) - depth * normals[v].normalized());
 }
 
+// The mesh without the triangles that slits cut: a shell does not hold a cut closed.
+TriangleMesh without_cut(const TriangleMesh& mesh, const std::vector<std::string>& slits,
+                         const PreparedSurfaces& surfaces, const std::string& place)
+{
+  if (slits.empty())
+    return mesh;
+  std::vector<bool> keep(mesh.triangles.size(), true);
+  for (const std::string& slit : slits)
+  {
+    const TriangleTree& tree = named_surface(surfaces, slit, place).tree();
+    for (std::size_t t = 0; t < keep.size(); ++t)
+    {
+      const auto [a, b, c] = corners(mesh, mesh.triangles[t]);
+      if (tree.crossed_by(a, b) || tree.crossed_by(b, c) || tree.crossed_by(c, a))
+        keep[t] = false;
+    }
+  }
+  return keep_triangles(mesh, keep);
+}
+
 // A stack of adjacent layers that are shells.
 struct Plate
 {
@@ -125,19 +145,20 @@ void bind_shells(const Scene& scene, const PreparedSurfaces& surfaces, const Loc
   {
     const Layer& layer = *plate.top;
     const std::string place = place_in_scene(scene, "layer", layer);
-    const Region crop = scene.volumes[index_of(scene.volumes, layer.volume, place, "volume")].crop;
+    const Volume& volume = scene.volumes[index_of(scene.volumes, layer.volume, place, "volume")];
     // Only the part near the tissue is used, because triangles of the surface may be larger than the tissue.
     Box tissue;
     for (const auto& corner : { Vector3d(0, 0, 0), Vector3d(model.size[0], model.size[1], model.size[2]) })
       tissue.extend(frame.grid_point(model, corner[0], corner[1], corner[2]));
-    BoundMesh near = bind_mesh(refined(named_surface(surfaces, layer.surface, place).mesh(), tissue, 2 * edge), crop,
-                               frame, model, 2 * edge, monitor);
+    BoundMesh near = bind_mesh(refined(named_surface(surfaces, layer.surface, place).mesh(), tissue, 2 * edge),
+                               volume.crop, frame, model, 2 * edge, monitor);
     TriangleMesh surface = near.mesh;
     if (!surface.triangles.empty())
       surface = with_equal_edges(surface, edge_ratio * edge);
     sink(surface, plate.neutral());
     for (Vector3& v : surface.vertices)
       v = to_array(frame.to_scene(to_vector(v)));
+    surface = without_cut(surface, volume.slits, surfaces, place);
     BoundMesh bound = bind_mesh(surface, Region(), frame, model, farthest * edge, monitor);
     if (bound.mesh.triangles.empty())
       throw failure("{}: no triangle of surface '{}' lies in the crop of volume '{}' and within {} of its voxels",

@@ -22,6 +22,7 @@ std::vector<VerificationCase> verification_cases(const BakeScene& bake)
            { "affine_motion", true, verify_affine_motion },
            { "energy_gradient", true, verify_energy_gradient },
            { "uniaxial_stretch", true, verify_uniaxial_stretch },
+           { "orthotropic_skin", true, verify_orthotropic_skin },
            { "simple_shear", true, verify_simple_shear },
            { "active_bar", true, verify_active_bar },
            { "published_bar", true, verify_published_bar },

@@ -9,10 +9,11 @@ namespace frontalis
 // The cases that need no scene; verification.cpp lists them.
 using VerificationFunction = void(const Backend& backend, Finding& finding);
 VerificationFunction verify_rigid_motion, verify_affine_motion, verify_energy_gradient, verify_uniaxial_stretch,
-    verify_simple_shear, verify_active_bar, verify_published_bar, verify_cantilever, verify_vibration,
-    verify_convergence, verify_cook, verify_staircase, verify_wrinkling, verify_viscosity, verify_hertz,
-    verify_contact_pressure, verify_contact_impact, verify_contact_wrench, verify_contact_incline, verify_self_contact,
-    verify_energy_balance, verify_precision, verify_heart_beam, verify_heart_ellipsoid, verify_calculix;
+    verify_orthotropic_skin, verify_simple_shear, verify_active_bar, verify_published_bar, verify_cantilever,
+    verify_vibration, verify_convergence, verify_cook, verify_staircase, verify_wrinkling, verify_viscosity,
+    verify_hertz, verify_contact_pressure, verify_contact_impact, verify_contact_wrench, verify_contact_incline,
+    verify_self_contact, verify_energy_balance, verify_precision, verify_heart_beam, verify_heart_ellipsoid,
+    verify_calculix;
 /// Cases that start from a scene.
 void verify_attachment(const Backend& backend, const BakeScene& bake, Finding& finding);
 void verify_free_sides(const Backend& backend, const BakeScene& bake, Finding& finding);

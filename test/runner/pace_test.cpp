@@ -1,0 +1,98 @@
+#include "runner/bar_face.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+using namespace frontalis;
+using namespace frontalis::test;
+
+TEST(Runner, RealTimeKeepsPaceWithTheClock)
+{
+  constexpr double rate = 50;
+  std::mutex mutex;
+  std::vector<Frame> frames;
+  {
+    Runner runner(fast_bar(), settings(Pace::real_time, rate),
+                  [&](const Frame& frame)
+                  {
+                    const std::lock_guard<std::mutex> lock(mutex);
+                    frames.push_back(frame);
+                  });
+    EXPECT_TRUE(comes_true(
+        [&]
+        {
+          const std::lock_guard<std::mutex> lock(mutex);
+          return !frames.empty() && frames.back().wall_time > 1.5 && frames.back().real_time_factor > 0.5;
+        }));
+  }
+  for (std::size_t f = 0; f < frames.size(); ++f)
+  {
+    // the simulation is ahead of the clock by no more than the frame that it computes
+    EXPECT_LE(frames[f].time, frames[f].wall_time + 1 / rate + 1e-6);
+    EXPECT_LE(static_cast<double>(f), frames[f].wall_time * rate + 1);
+    if (f > 0)
+    {
+      EXPECT_GE(frames[f].time, frames[f - 1].time);
+    }
+  }
+  // A frame makes up for at most two late frames.
+  EXPECT_LE(frames.back().real_time_factor, 1 + 3 / rate + 1e-6);
+}
+
+TEST(Runner, FastestRunsAheadOfTheClock)
+{
+  std::atomic<double> factor{ 0 };
+  Runner runner(fast_bar(), settings(Pace::fastest), [&](const Frame& frame) { factor = frame.real_time_factor; });
+  EXPECT_TRUE(comes_true([&] { return factor > 1.5; }));
+}
+
+TEST(Runner, TellsItsProgressBetweenFramesThatAreFarApart)
+{
+  std::mutex mutex;
+  std::vector<std::pair<bool, double>> told;  // whether by a frame, and the time
+  const auto note = [&](bool is_frame)
+  {
+    return [&, is_frame](const Frame& frame)
+    {
+      const std::lock_guard<std::mutex> lock(mutex);
+      told.emplace_back(is_frame, frame.time);
+    };
+  };
+  RunnerSettings with_progress = settings(Pace::fastest, 2);
+  with_progress.on_progress = note(false);
+  {
+    Runner runner(fast_bar(), with_progress, note(true));
+    EXPECT_TRUE(comes_true(
+        [&]
+        {
+          const std::lock_guard<std::mutex> lock(mutex);
+          return std::count_if(told.begin(), told.end(), [](const auto& one) { return one.first; }) > 2;
+        }));
+  }
+  int between = 0;
+  for (std::size_t i = 1; i < told.size(); ++i)
+  {
+    between += told[i].first ? 0 : 1;
+    EXPECT_GT(told[i].second, told[i - 1].second);
+  }
+  EXPECT_GT(between, 1);
+}
+
+TEST(Runner, TimeScalingPlaysTheSameClock)
+{
+  auto model = std::make_shared<Model>(*bar());
+  model->time_scaling = 4;
+  Runner runner(model, settings(Pace::lock_step), {});
+  // a small activation, because voxels that stiffen fast need shorter time steps
+  runner.set_activation({ { "puller", 0.2 } });
+  const Frame scaled = runner.step(0.04);
+  EXPECT_NEAR(scaled.time, 0.04, 1e-12);
+  Runner plain(bar(), settings(Pace::lock_step), {});
+  plain.set_activation({ { "puller", 0.2 } });
+  EXPECT_NEAR(static_cast<double>(scaled.steps), static_cast<double>(plain.step(0.04).steps) / 4, 0.1 * scaled.steps);
+}
