@@ -158,6 +158,22 @@ TEST(RandomHeads, HavePartsThatFitTogether)
   }
 }
 
+/// Number of voxels between the lips, of a mouth whose corners are at y = +-`corner` [m].
+int voxels_between_lips(const Model& model, double corner)
+{
+  const double fissure = -74.1e-3;  // height of the middle of the body of that name
+  int count = 0;
+  for (const auto& nodes : model.voxel_nodes)
+  {
+    Vector3d centre = Vector3d::Zero();
+    for (const std::int32_t n : nodes)
+      centre += to_vector(model.to_scene(rest_position(model, static_cast<std::size_t>(n)))) / 8;
+    const bool between = std::abs(centre[2] - fissure) < 1e-3 && std::abs(centre[1]) < corner - 3e-3;
+    count += between && centre[0] > -10e-3 ? 1 : 0;
+  }
+  return count;
+}
+
 TEST(RandomHeads, CanBeBaked)
 {
   Scene scene = read_scene(FRONTALIS_SOURCE_DIRECTORY "/config/head.yaml");
@@ -194,6 +210,8 @@ TEST(RandomHeads, CanBeBaked)
       EXPECT_EQ(model.muscles.size(), muscles);
       EXPECT_GT(model.voxels.size(), 15000u);
       EXPECT_GT(model.landmarks.size(), 10u);
+      const Head head(shipped(), person.dimensions, person.tissue);
+      EXPECT_EQ(voxels_between_lips(model, head.landmark("ch")[1]), 0);
     }
     catch (const Error& error)
     {

@@ -119,6 +119,16 @@ Vector3d Head::bone_shift(const Vector3d& p) const
   return (usual_bones_->hull(p) - bones_->hull(p)) * slope.normalized();
 }
 
+double Head::deeper(const Vector3d& skin, double depth) const
+{
+  constexpr double thin =
+      6e-3;  // [m] above bone; below thinner tissue, and on the conjunctiva in the orbit, less changes
+  if (!usual_bones_)
+    return 0;
+  const double usual = usual_bones_->hull(skin);
+  return (bones_->hull(skin) - usual) * std::max(0.0, std::min(usual, depth)) / std::max(usual, thin);
+}
+
 TriangleMesh Head::skin(const std::string& name, double edge) const
 {
   // `face` is the part with a dermis; `visible` also has the linings of nostrils and lips; `skin` is the whole surface,

@@ -95,6 +95,9 @@ private:
   TriangleMesh eye(bool left, double edge) const;
   TriangleMesh bone(const std::string& name, double edge) const;
   ControlNet left_net(const HeadTemplate::Muscle& muscle) const;
+  /// How much deeper a place lies that is `depth` below a point of the skin, because the bone there is deeper: in
+  /// proportion to its depth above the bone, and as much as the bone below it.
+  double deeper(const Vector3d& skin, double depth) const;
   /// left_net(), computed once per muscle, because surfaces and fibres of both sides need it.
   ControlNet known_net(const HeadTemplate::Muscle& muscle) const;
   /// The point of the skin closest to p, the outward normal and the thickness of the soft tissue there, at most 20 mm.
