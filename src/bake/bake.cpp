@@ -2,6 +2,7 @@
 
 #include "bake/fibres/fibres.hpp"
 #include "bake/messages.hpp"
+#include "bake/shapes/head/follow_head.hpp"
 #include "bake/voxels/contact_bodies.hpp"
 #include "bake/voxels/gaps.hpp"
 #include "bake/voxels/self_contacts.hpp"
@@ -85,8 +86,9 @@ void check_layers(const Scene& scene, const Volumes& volumes, const Voxels& voxe
 
 }  // namespace
 
-Model bake(const Scene& scene, BakeReport* report, const BakeProgress& progress)
+Model bake(const Scene& given, BakeReport* report, const BakeProgress& progress)
 {
+  const Scene scene = following_head(given);
   const bool measure = report != nullptr && report->measure_muscles;
   if (report != nullptr)
     *report = { {}, {}, {}, measure, {} };

@@ -14,8 +14,9 @@ namespace
 using Point = std::array<float, 3>;
 
 constexpr Point skin_colour{ { 0.87F, 0.66F, 0.55F } }, lip_colour{ { 0.74F, 0.39F, 0.37F } },
-    brow_colour{ { 0.25F, 0.17F, 0.12F } }, hair_colour{ { 0.29F, 0.20F, 0.145F } },
-    corner_colour{ { 0.60F, 0.40F, 0.36F } }, white_colour{ { 0.90F, 0.88F, 0.85F } };
+    tongue_colour{ { 0.69F, 0.37F, 0.36F } }, brow_colour{ { 0.25F, 0.17F, 0.12F } },
+    hair_colour{ { 0.29F, 0.20F, 0.145F } }, corner_colour{ { 0.60F, 0.40F, 0.36F } },
+    white_colour{ { 0.90F, 0.88F, 0.85F } };
 // Lashes cover the edges of the lids, which are parabolas as seen from the front. Lengths are divided by the eyeball's
 // radius.
 struct Lashes
@@ -96,10 +97,11 @@ std::vector<std::string> label_names()
 
 BodyAppearance body_appearance(const std::string& name, bool only_shown, const TriangleMesh& surface)
 {
-  const bool is_hair = only_shown && name == "hair";
+  const bool is_hair = only_shown && name == "hair", is_tongue = only_shown && name == "tongue";
+  const bool is_skin = only_shown && !is_hair && !is_tongue;
   BodyAppearance look;
-  look.label = is_hair ? label_of_part(name) : static_cast<std::uint8_t>(only_shown ? skin_label : body_label);
-  look.colour = is_hair ? hair_colour : only_shown ? skin_colour : teeth_colour;
+  look.label = is_hair ? label_of_part(name) : static_cast<std::uint8_t>(is_skin ? skin_label : body_label);
+  look.colour = is_hair ? hair_colour : is_tongue ? tongue_colour : is_skin ? skin_colour : teeth_colour;
   look.colours.assign(surface.vertices.size(), look.colour);
   if (!is_hair)
     return look;
@@ -137,10 +139,10 @@ SkinAppearance skin_appearance(const std::vector<std::string>& landmarks, const 
                              std::vector<std::uint8_t>(vertices.size(), skin_label), std::nullopt };
   if (has_mouth)
   {
-    // The ball fills the view into a wide open mouth, and lies behind the front teeth.
-    const double height = double((*corner)[2]) - (*chin)[2], radius = 1.55 * height;
+    // The ball fills the view into a wide open mouth, and lies behind teeth and tongue.
+    const double height = double((*corner)[2]) - (*chin)[2];
     appearance.mouth = RenderBall{
-      { double((*corner)[0]) - radius - height / 2, 0, (*corner)[2] - height / 5 }, radius, inside_colour, inside_label
+      { (*corner)[0] - 3.2 * height, 0, (*corner)[2] - 0.5 * height }, 1.2 * height, inside_colour, inside_label
     };
   }
   std::vector<std::uint8_t> part(landmarks.size());

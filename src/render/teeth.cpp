@@ -20,12 +20,17 @@ struct Row
   std::array<double, 8> borders;
   double edge, rim;
 };
-constexpr Row upper_row{ { 0, 8.6e-3, 15.2e-3, 23e-3, 30e-3, 36.8e-3, 47e-3, 57e-3 }, -1e-3, 9.3e-3 };
+constexpr Row upper_row{ { 0, 8.6e-3, 15.2e-3, 23e-3, 30e-3, 36.8e-3, 47e-3, 57e-3 }, -2.5e-3, 9.3e-3 };
 constexpr Row lower_row{ { 0, 5.4e-3, 11.3e-3, 18.2e-3, 25.2e-3, 32.3e-3, 43.3e-3, 54e-3 }, -2.7e-3, -11.7e-3 };
 constexpr double papilla = 1.8e-3;  // [m] by which the gums reach farther between two teeth
 constexpr double groove = 0.6e-3;   // [m] beside the border of two teeth within which a tooth gets darker
 constexpr float shade = 0.6F;       // brightness of the border itself
 constexpr double arch_depth = 0.7;  // depth of the arch divided by half of its width
+// Front teeth are thinner than the body: behind their edges, which have this thickness, it is cut off at a slope.
+// Molars are flat.
+constexpr double edge_thickness = 3e-3;  // [m]
+constexpr double edge_slope = 1.2;
+constexpr double deepest_cut = 6e-3;  // [m]
 
 // Splits each edge of a mesh in two, so that colours of vertices can show details that are smaller than its triangles.
 void halve(RenderMesh& mesh)
@@ -71,7 +76,7 @@ RenderMesh painted_teeth(const TriangleMesh& surface, bool lower, double corner_
   const double up = lower ? -1 : 1, depth = arch_depth * half_width;
   mesh.colours.reserve(mesh.vertices.size());
   mesh.labels.reserve(mesh.vertices.size());
-  for (const auto& p : mesh.vertices)
+  for (auto& p : mesh.vertices)
   {
     // Arc length from the front of an elliptic arch, to first order in the difference of its semi-axes.
     const double angle = std::atan2(std::abs(p[1]) / half_width, (p[0] - front + depth) / depth);
@@ -79,16 +84,19 @@ RenderMesh painted_teeth(const TriangleMesh& surface, bool lower, double corner_
     const auto next = std::upper_bound(row.borders.begin() + 1, row.borders.end() - 1, along);
     const double width = *next - *(next - 1), from_border = std::min(along - *(next - 1), *next - along);
     const double aside = std::clamp(1 - 2 * from_border / width, 0.0, 1.0);  // 0 in the middle of the tooth
-    const double height = up * (p[2] - corner_height);
+    // The body ends with the teeth.
+    const double inwards = half_width - std::hypot(p[1], (p[0] - front + depth) / arch_depth);
+    const double cut = edge_slope * std::max(0.0, inwards - edge_thickness) * std::pow(std::cos(angle), 2);
+    const double edge = up * row.edge + 0.6e-3 * std::pow(aside, 4) + std::min(deepest_cut, cut);
+    const double height = std::max(edge, up * (p[2] - corner_height));
+    p[2] = static_cast<float>(corner_height + up * height);
     const bool is_gum = height > up * row.rim - papilla * aside * aside;
     const double light = is_gum ? 1 : shade + (1 - shade) * std::clamp(from_border / groove, 0.0, 1.0);
     std::array<float, 3> colour = is_gum ? gum_colour : teeth_colour;
     for (float& c : colour)
       c *= static_cast<float>(light);
-    // The part of the body beyond the teeth is drawn dark.
-    const bool is_beyond = height < up * row.edge + 0.6e-3 * std::pow(aside, 4);
-    mesh.colours.push_back(is_beyond ? inside_colour : colour);
-    mesh.labels.push_back(is_beyond ? inside_label : body_label);
+    mesh.colours.push_back(colour);
+    mesh.labels.push_back(body_label);
   }
   return mesh;
 }

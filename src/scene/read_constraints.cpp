@@ -92,6 +92,7 @@ constexpr ConstraintKind constraint_kinds[] = {
     {
       constraint.within = 0;
       constraint.bone = mapping.optional("bone").name();
+      constraint.crop = read_region(mapping.optional("crop"));
     } },
 };
 

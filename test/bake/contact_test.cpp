@@ -144,6 +144,17 @@ TEST(BakedContact, WhatIsOnlyShownContinuesTheSkinAndTouchesNothing)
     ++seam;
   }
   EXPECT_GE(seam, 8);
+  // with a crop of its own it goes on below the skin, deeper by 0.12 of the distance from the skin's crop
+  shown.crop = Region{};
+  shown.crop.upper[0] = 5.1e-3;
+  double deepest = 0;
+  const Model below = bake(scene);
+  for (const auto& vertex : below.contacts[0].shape.vertices)
+    if (const auto p = below.to_scene(vertex); p[0] > 3.2e-3 && p[2] < 5e-3)
+      deepest = std::max(deepest, p[0] > 5.2e-3 ? 1 : p[2]);
+  EXPECT_GT(deepest, 0);
+  EXPECT_LT(deepest, 5e-3);
+  EXPECT_GT(below.contacts[0].shape.triangles.size(), contact.shape.triangles.size());
 }
 
 TEST(BakedContact, AFileGivesItBackAndHoldsNothingWithoutIt)

@@ -281,14 +281,16 @@ TEST(FaceAppearance, LashesAreAlongTheEdgesOfTheLids)
   EXPECT_EQ(colours[3], bare[3]);
 }
 
-TEST(FaceAppearance, BodiesHaveTheColourOfTeethSkinOrHair)
+TEST(FaceAppearance, BodiesHaveTheColourOfTeethSkinHairOrTongue)
 {
   const TriangleMesh none;
   const auto teeth = body_appearance("hair", false, none), skin = body_appearance("head", true, none),
-             hair = body_appearance("hair", true, none);
+             hair = body_appearance("hair", true, none), tongue = body_appearance("tongue", true, none);
   EXPECT_EQ(teeth.label, body_label);
   EXPECT_EQ(skin.label, skin_label);
   EXPECT_EQ(label_names().at(hair.label), "hair");
+  EXPECT_EQ(tongue.label, body_label);
+  EXPECT_LT(tongue.colour[1], 0.6F * tongue.colour[0]);
   EXPECT_EQ(skin.colour, skin_appearance({}, {}, { { 0, 0, 0 } }).colours[0]);
   // hair is thin at the border of its surface, and dense where that is far away
   TriangleMesh fan;

@@ -58,11 +58,12 @@ TEST(Teeth, are_painted_between_gums_and_their_edges)
     // between the two middle teeth it is darker, as on both sides of the midline
     EXPECT_LT(at(mesh, 0, up * 6e-3).first[0], 0.7F * teeth_colour[0]);
     EXPECT_EQ(at(mesh, 4e-3, up * 6e-3), at(mesh, -4e-3, up * 6e-3));
-    // gums are red, and nothing is seen beyond the edges of the teeth
+    // gums are red, and the body ends with the edges of the teeth, which are thin in front and flat at the sides
     const auto gum = at(mesh, 4e-3, up * 15e-3);
     EXPECT_GT(gum.first[0], 1.4F * gum.first[1]);
     EXPECT_EQ(gum.second, body_label);
-    EXPECT_EQ(at(mesh, 4e-3, -up * 5e-3).second, inside_label);
+    for (const auto& p : mesh.vertices)
+      EXPECT_GT(up * p[2], lower ? 2.6e-3 : -2.6e-3);
   }
 }
 

@@ -328,6 +328,7 @@ TEST(EveryKey, constraints_and_loads)
   EXPECT_EQ(scene.constraints[4].kind, SceneConstraint::Kind::contact);
   EXPECT_EQ(scene.constraints[4].within, 0);
   EXPECT_EQ(scene.constraints[4].bone, "finger");
+  EXPECT_EQ(scene.constraints[4].crop.lower[0], 1e-2);
 
   ASSERT_EQ(scene.loads.size(), 3U);
   EXPECT_EQ(scene.loads[0].kind, SceneLoad::Kind::traction);

@@ -15,7 +15,8 @@ namespace frontalis
 constexpr std::array<float, 3> teeth_colour{ { 0.93F, 0.91F, 0.84F } };
 
 /// Colours of a body's vertices, and its label. A body that tissue touches looks like teeth. A body that is only shown
-/// looks like skin, or like hair if its name is "hair". Hair gets thinner towards the open border of its surface.
+/// looks like skin, or like what its name says if that is "hair" or "tongue". Hair gets thinner towards the open border
+/// of its surface.
 struct BodyAppearance
 {
   std::uint8_t label = 0;
@@ -67,7 +68,7 @@ std::vector<RenderBall> resting_eyes(const Model& model);
 RenderBall socket_of(const RenderBall& eyeball);
 
 /// A body on which lips rest, drawn as a row of teeth with their gums. Teeth of common sizes are painted on the middle
-/// of the body, which is dark beyond their edges. `surface`: at rest, in the face frame, symmetric about y = 0.
+/// of the body, which is cut off at their edges. `surface`: at rest, in the face frame, symmetric about y = 0.
 /// `corner_height`: z of the corners of the mouth at rest [m].
 RenderMesh painted_teeth(const TriangleMesh& surface, bool lower, double corner_height);
 

@@ -2,6 +2,7 @@
 
 #include "bake/mesh/surface.hpp"
 #include "bake/messages.hpp"
+#include "bake/shapes/head/follow_head.hpp"
 
 #include <filesystem>
 #include <fstream>
@@ -13,7 +14,8 @@ void write_surfaces(const Scene& scene, const std::string& folder)
 {
   std::error_code ignored;
   std::filesystem::create_directories(folder, ignored);
-  for (const Surface& surface : scene.surfaces)
+  const Scene moved = following_head(scene);
+  for (const Surface& surface : moved.surfaces)
   {
     TriangleMesh mesh;
     try

@@ -151,8 +151,25 @@ TriangleMesh part_beyond(const TriangleMesh& mesh, const Region& region)
     rest.lower[axis] = region.lower[axis];
     rest.upper[axis] = region.upper[axis];
   }
-  join_vertices(beyond);
   return beyond;
+}
+
+// The part of a mesh inside `region` and `box`, a little below the mesh: the deeper, the farther from the region's
+// sides.
+TriangleMesh part_below(const TriangleMesh& mesh, const Region& region, const Region& box)
+{
+  constexpr double slope = 0.12;  // depth divided by the distance from the closest side
+  TriangleMesh below = cut_mesh(cut_mesh(mesh, region), box);
+  const std::vector<Vector3d> normals = vertex_normals(below);
+  for (std::size_t v = 0; v < below.vertices.size(); ++v)
+  {
+    Vector3& p = below.vertices[v];
+    double away = std::numeric_limits<double>::infinity();
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      away = std::min({ away, p[axis] - region.lower[axis], region.upper[axis] - p[axis] });
+    p = to_array(to_vector(p) - slope * std::max(0.0, away) * normals[v]);
+  }
+  return below;
 }
 
 // Index of a bone in the model, which is added if it is new; -1 without a name.
@@ -254,8 +271,16 @@ void bind_contacts(const Scene& scene, const PreparedSurfaces& surfaces, const L
     {
       for (const std::string& name : constraint.surfaces)
       {
-        const TriangleMesh& mesh = named_surface(surfaces, name, place).mesh();
-        add_shape(name == scene.skin.surface ? part_beyond(mesh, scene.skin.crop) : mesh, frame, contact);
+        TriangleMesh mesh = named_surface(surfaces, name, place).mesh();
+        if (name == scene.skin.surface)
+        {
+          TriangleMesh rest = part_beyond(mesh, scene.skin.crop);
+          if (constraint.crop.lower != Region{}.lower || constraint.crop.upper != Region{}.upper)
+            append(rest, part_below(mesh, scene.skin.crop, constraint.crop));
+          join_vertices(rest);
+          mesh = std::move(rest);
+        }
+        add_shape(mesh, frame, contact);
       }
       if (contact.shape.triangles.empty())
         throw Error(place + ": the skin's crop leaves nothing to show; leave out this constraint, or crop the skin");

@@ -21,9 +21,13 @@ struct HairLayer
 };
 constexpr HairLayer hair_layers[] = { { "hair", 3.5e-3, 14e-3 }, { "hair_top", 9e-3, 34e-3 } };
 constexpr double hair_margin = 3e-3;  // [m] by which the surface of hair goes on, under the skin, beyond the hairline
-constexpr double hair_sink = 0.9;     // depth of that margin below the skin, divided by the distance from the hairline
+// Slope of the surface of hair against the skin, on both sides of the hairline. It is constant there, so that the line
+// in which the two surfaces meet is as smooth as the hairline and does not run from vertex to vertex.
+constexpr double hair_slope = 0.35;
 constexpr double hairline_wave = 1e-3;  // [m] by which locks shift the hairline
 constexpr double lock_height = 0.12;    // height of a lock divided by the thickness of the hair
+
+constexpr const char* level_body = "fissure";  // a body all of whose points keep their heights: it empties voxels
 
 constexpr int default_levels = 2;  // subdivisions of the skin from which depths are measured
 
@@ -69,7 +73,7 @@ TriangleMesh hair_on(const TriangleMesh& skin,
       if (&layer == hair_layers)
       {
         covered[v] = deep > -hair_margin;
-        height += hair_sink * std::clamp(deep, -hair_margin, 0.0);
+        height += hair_slope * std::clamp(deep, -hair_margin, hair_margin);
       }
     }
     mesh.vertices[v] = to_array(p + height * normals[v]);
@@ -100,6 +104,29 @@ Head::Head(std::shared_ptr<const HeadTemplate> head, const std::map<std::string,
   }
   warp_.emplace(*head_, landmarks_, dimensions);
   bones_.emplace(*head_, *tree_, tissue);
+  if (tissue != 1)
+    usual_bones_.emplace(*head_, *tree_);
+}
+
+Vector3d Head::bone_shift(const Vector3d& p) const
+{
+  constexpr double step = 0.5e-3;  // [m]
+  if (!usual_bones_)
+    return Vector3d::Zero();
+  Vector3d slope;
+  for (int a = 0; a < 3; ++a)
+    slope[a] = usual_bones_->hull(p + step * Vector3d::Unit(a)) - usual_bones_->hull(p - step * Vector3d::Unit(a));
+  return (usual_bones_->hull(p) - bones_->hull(p)) * slope.normalized();
+}
+
+double Head::deeper(const Vector3d& skin, double depth) const
+{
+  constexpr double thin =
+      6e-3;  // [m] above bone; below thinner tissue, and on the conjunctiva in the orbit, less changes
+  if (!usual_bones_)
+    return 0;
+  const double usual = usual_bones_->hull(skin);
+  return (bones_->hull(skin) - usual) * std::max(0.0, std::min(usual, depth)) / std::max(usual, thin);
 }
 
 TriangleMesh Head::skin(const std::string& name, double edge) const
@@ -139,10 +166,14 @@ TriangleMesh Head::bone(const std::string& name, double edge) const
   Box half = bounding_box(default_skin_);
   half.min()[1] = 0;
   TriangleMesh mesh = isosurface([&](const Vector3d& p) { return bones_->part(name, p); }, half, edge, true);
+  const bool is_level = name == level_body;
   for (Vector3& p : mesh.vertices)
   {
     const bool middle = p[1] == 0;
+    const double height = p[2];
     p = to_array((*warp_)(to_vector(p)));
+    if (is_level)
+      p[2] = height;
     if (middle)
       p[1] = 0;
   }

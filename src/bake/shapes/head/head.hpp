@@ -15,7 +15,8 @@ namespace frontalis
 {
 
 /// Deforms the default head to given dimensions. The displacement is the most likely one of a smooth random field that
-/// gives each independent dimension its value (kriging with a Matern 3/2 covariance, from distances of landmarks).
+/// gives each independent dimension its value (kriging with a Matern 3/2 covariance, from distances of landmarks). The
+/// head is shifted so that the fissure of the mouth keeps its height.
 class HeadWarp
 {
 public:
@@ -29,6 +30,7 @@ public:
 private:
   std::vector<Vector3d> places_;   ///< landmarks of both sides
   std::vector<Vector3d> weights_;  ///< weights of the covariance with each place
+  double lift_ = 0;                ///< added to all heights, so that a landmark keeps its own [m]
 };
 
 /// Fields that approximate the signed distances from the default head's bones [m], negative inside.
@@ -81,6 +83,9 @@ public:
   double dimension(const std::string& name) const;
   /// Position on this head of a point of the default head.
   Vector3d moved(const Vector3d& p) const { return (*warp_)(p); }
+  /// How far the outer surface of the bones near a point of the default head is displaced because there is more or less
+  /// tissue on it. Dimensions do not count.
+  Vector3d bone_shift(const Vector3d& p) const;
   Vector3d place(const HeadTemplate::Point& point) const;
   /// Position of a landmark, or with `right` of its image on the right side.
   Vector3d landmark(const std::string& name, bool right = false) const;
@@ -90,6 +95,9 @@ private:
   TriangleMesh eye(bool left, double edge) const;
   TriangleMesh bone(const std::string& name, double edge) const;
   ControlNet left_net(const HeadTemplate::Muscle& muscle) const;
+  /// How much deeper a place lies that is `depth` below a point of the skin, because the bone there is deeper: in
+  /// proportion to its depth above the bone, and as much as the bone below it.
+  double deeper(const Vector3d& skin, double depth) const;
   /// left_net(), computed once per muscle, because surfaces and fibres of both sides need it.
   ControlNet known_net(const HeadTemplate::Muscle& muscle) const;
   /// The point of the skin closest to p, the outward normal and the thickness of the soft tissue there, at most 20 mm.
@@ -108,7 +116,8 @@ private:
   std::optional<TriangleTree> tree_;
   std::map<std::string, Vector3d> landmarks_;  ///< landmarks of the default head, left or midline
   std::optional<HeadWarp> warp_;
-  std::optional<HeadBones> bones_;
+  std::optional<HeadBones> bones_,
+      usual_bones_;  ///< usual: below the usual amount of tissue; empty if that is this one
   mutable std::mutex nets_mutex_;
   mutable std::map<std::string, ControlNet> nets_;
 };

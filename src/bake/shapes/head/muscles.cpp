@@ -25,7 +25,7 @@ ControlNet Head::left_net(const HeadTemplate::Muscle& muscle) const
     std::vector<double> depths;
     depths.reserve(muscle.curves.size());
     for (const auto& curve : muscle.curves)
-      depths.push_back(curve.below < 0 ? curve.depth * room : curve.below);
+      depths.push_back(curve.below < 0 ? curve.depth * room : curve.below + deeper(place.skin, curve.below));
     const double depth = sheet.between(depths, u, s);
     // A muscle with a depth of its own (Curve::below) may pass below a bone.
     const auto last = static_cast<double>(muscle.curves.size() - 1);

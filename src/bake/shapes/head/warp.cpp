@@ -11,6 +11,9 @@ namespace
 // Correlation length of the landmarks' displacements: about half the height of a face.
 constexpr double correlation_length = 60e-3;  // [m]
 constexpr int iterations = 12;
+// The head is shifted so that this landmark keeps its height. The fissure of the mouth is there, for which a layer of
+// voxels is empty.
+constexpr const char* level_landmark = "sto";
 // A dimension that differs from the mean by more than this number of standard deviations is refused: hardly one person
 // in 10^8 has it.
 constexpr double most_deviations = 6;
@@ -123,6 +126,8 @@ HeadWarp::HeadWarp(const HeadTemplate& head, const std::map<std::string, Vector3
     for (Eigen::Index i = 0; i < n; ++i)
       moved[i] = (*this)(places_[i]);
   }
+  if (const auto level = left.find(level_landmark); level != left.end())
+    lift_ = places_[level->second][2] - moved[level->second][2];
   for (const Span& span : spans)
     if (std::abs(measure(moved, span.from, span.to) - span.wanted) > 0.5 * derived_tolerance)
     {
@@ -150,7 +155,7 @@ HeadWarp::HeadWarp(const HeadTemplate& head, const std::map<std::string, Vector3
 
 Vector3d HeadWarp::operator()(const Vector3d& p) const
 {
-  Vector3d sum = p;
+  Vector3d sum = p + lift_ * Vector3d::UnitZ();
   for (std::size_t i = 0; i < places_.size(); ++i)
     sum += covariance((p - places_[i]).norm()) * weights_[i];
   return sum;

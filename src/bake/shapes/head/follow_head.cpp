@@ -1,0 +1,117 @@
+#include "bake/shapes/head/follow_head.hpp"
+
+#include "bake/shapes/head/head.hpp"
+
+namespace frontalis
+{
+namespace
+{
+
+constexpr double step = 6e-3;  // [m] by which sides of the tissue move: a multiple of voxels of 1, 2 and 3 mm
+
+/// Moves places as a head is deformed.
+class Follower
+{
+public:
+  explicit Follower(const Head& head) : head_(head) {}
+
+  void move(Vector3& p) const { p = to_array(head_.moved(to_vector(p))); }
+
+  /// Moves a region as its middle moves, where a region without end ends at the face. A box of nodes at a bone also
+  /// goes along with the bone's depth below the skin.
+  void move(Region& region, bool at_bone = false) const
+  {
+    const Vector3d middle = middle_of(region), size = to_vector(region.upper) - to_vector(region.lower);
+    Vector3d to = middle;
+    if (at_bone && size.maxCoeff() < 1)
+      to += head_.bone_shift(middle);
+    const Vector3d by = head_.moved(to) - middle;
+    for (int a = 0; a < 3; ++a)
+    {
+      region.lower[a] += by[a];
+      region.upper[a] += by[a];
+    }
+  }
+
+  /// Moves each side of a region by itself, in whole steps.
+  void move_sides(Region& region) const
+  {
+    const Vector3d middle = middle_of(region);
+    for (Vector3* corner : { &region.lower, &region.upper })
+      for (int a = 0; a < 3; ++a)
+      {
+        double& side = (*corner)[a];
+        Vector3d at = middle;
+        at[a] = side;
+        if (std::isfinite(side))
+          side += step * std::round((head_.moved(at) - at)[a] / step);
+      }
+  }
+
+  void move_sides(Shape& box) const
+  {
+    Region region;
+    for (int a = 0; a < 3; ++a)
+    {
+      region.lower[a] = box.centre[a] - box.size[a] / 2;
+      region.upper[a] = box.centre[a] + box.size[a] / 2;
+    }
+    move_sides(region);
+    for (int a = 0; a < 3; ++a)
+    {
+      box.centre[a] = (region.lower[a] + region.upper[a]) / 2;
+      box.size[a] = region.upper[a] - region.lower[a];
+    }
+  }
+
+private:
+  static Vector3d middle_of(const Region& region)
+  {
+    const Vector3d lower = to_vector(region.lower).cwiseMax(Vector3d(-0.08, -0.08, -0.13));
+    return (lower + to_vector(region.upper).cwiseMin(Vector3d(0.03, 0.08, 0.072))) / 2;
+  }
+
+  const Head& head_;
+};
+
+}  // namespace
+
+Scene following_head(const Scene& given)
+{
+  Scene scene = given;
+  const auto has_head = [](const Surface& surface) { return surface.shape && surface.shape->head; };
+  const auto first = std::find_if(scene.surfaces.begin(), scene.surfaces.end(), has_head);
+  if (first == scene.surfaces.end() || (first->shape->dimensions.empty() && first->shape->tissue == 1))
+    return scene;
+  const auto head = head_of(*first->shape);
+  const Follower follower(*head);
+  for (Surface& surface : scene.surfaces)
+    if (surface.shape && surface.shape->kind == Shape::Kind::box)
+      follower.move_sides(*surface.shape);
+    else if (surface.shape &&
+             (surface.shape->kind == Shape::Kind::sphere || surface.shape->kind == Shape::Kind::ellipsoid))
+      follower.move(surface.shape->centre);
+  for (Volume& volume : scene.volumes)
+    follower.move_sides(volume.crop);
+  follower.move_sides(scene.skin.crop);
+  for (SceneConstraint& constraint : scene.constraints)
+    if (constraint.within == 0)  // what is only shown joins the skin
+      follower.move_sides(constraint.crop);
+    else
+      follower.move(constraint.crop, constraint.restricts_nodes());
+  for (SceneLoad& load : scene.loads)
+    follower.move(load.crop);
+  for (SceneWeakness& weakness : scene.weakness)
+    follower.move(weakness.centre);
+  for (SceneLandmark& landmark : scene.landmarks)
+    follower.move(landmark.position);
+  for (auto& [bone, centre] : scene.bone_centres)
+    follower.move(centre);
+  for (SceneJoint& joint : scene.joints)
+    if (!joint.head)
+      follower.move(joint.joint.at);
+  follower.move(scene.frame.origin);
+  return scene;
+}
+
+}  // namespace frontalis
