@@ -11,9 +11,6 @@ namespace
 
 using Vector = BoneForces::Vector;
 
-Vector vector_of(const std::array<double, 3>& a) { return { a[0], a[1], a[2] }; }
-std::array<double, 3> array_of(const Vector& v) { return { { v.x, v.y, v.z } }; }
-
 }  // namespace
 
 BoneForces::BoneForces(Solver& solver, const Model& of)

@@ -6,6 +6,9 @@
 namespace frontalis
 {
 
+inline physics::Vec3<double> vector_of(const std::array<double, 3>& a) { return { a[0], a[1], a[2] }; }
+inline std::array<double, 3> array_of(const physics::Vec3<double>& v) { return { { v.x, v.y, v.z } }; }
+
 /// Forces of tissue on bones at one moment, in the local frame. Nodes count by Solver::internal_forces().
 struct BoneForces
 {

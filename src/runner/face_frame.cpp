@@ -29,10 +29,6 @@ bool all_finite(const std::vector<std::array<float, 3>>& vectors)
 
 using Vector = physics::Vec3<double>;
 
-Vector vector_of(const std::array<double, 3>& a) { return { a[0], a[1], a[2] }; }
-
-std::array<double, 3> array_of(const Vector& v) { return { { v.x, v.y, v.z } }; }
-
 BodyFrame in_face_frame(const Model& model, const Reaction& local, const RigidTransform& pose)
 {
   const std::array<double, 3> origin = inverse(model.to_face).translation;
