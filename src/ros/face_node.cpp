@@ -62,8 +62,9 @@ FaceNode::FaceNode(const ros::NodeHandle& handle, const ros::NodeHandle& private
   frame_timer_ = private_handle_.createWallTimer(ros::WallDuration(play_period),
                                                  [this](const ros::WallTimerEvent&) { repeat_frame_and_play(); });
   const double period = private_handle_.param("diagnostic_period", diagnostics_period);
-  diagnostics_timer_ = private_handle_.createWallTimer(ros::WallDuration(std::max(period, 0.01)),
-                                                       [this](const ros::WallTimerEvent&) { updater_.force_update(); });
+  diagnostics_timer_ = private_handle_.createWallTimer(
+      ros::WallDuration(std::isfinite(period) ? std::max(period, 0.01) : diagnostics_period),
+      [this](const ros::WallTimerEvent&) { updater_.force_update(); });
   loader_ = std::thread([this] { load(); });
 }
 
@@ -160,6 +161,11 @@ void FaceNode::replace_face(const FaceParameters& parameters)
     switched_off_.clear();
     if (server_)
       on_config(config_, 0);
+    else
+    {
+      server_ = std::make_unique<dynamic_reconfigure::Server<FaceConfig>>(server_mutex_, private_handle_);
+      server_->setCallback([this](FaceConfig& config, std::uint32_t level) { on_config(config, level); });
+    }
   }
   if (const std::string measured = measured_profile(*model); !measured.empty())
     ROS_INFO_STREAM(name_ << ": " << measured);
@@ -172,8 +178,6 @@ void FaceNode::load()
   try
   {
     replace_face(read_parameters(private_handle_));
-    server_ = std::make_unique<dynamic_reconfigure::Server<FaceConfig>>(server_mutex_, private_handle_);
-    server_->setCallback([this](FaceConfig& config, std::uint32_t level) { on_config(config, level); });
   }
   catch (const std::exception& error)
   {

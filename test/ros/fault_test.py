@@ -1,10 +1,14 @@
 #!/usr/bin/python3
 """Faces without a model stay alive, answer services, and say in /diagnostics what is wrong."""
 
+import os
 import unittest
 
+import rospkg
 import rospy
 import rostest
+from dynamic_reconfigure.client import Client
+from frontalis.srv import LoadScene
 
 from face import Face, wait
 
@@ -28,6 +32,11 @@ class Fault(unittest.TestCase):
 
     def test_scene_that_is_not_there(self):
         self.check("/no_file", "nowhere.yaml")
+        scene = os.path.join(rospkg.RosPack().get_path("frontalis"), "test/ros/small.yaml")
+        answer = rospy.ServiceProxy("/no_file/load_scene", LoadScene)(scene=scene)
+        self.assertTrue(answer.success, answer.message)
+        # the face that comes late can be configured as any other
+        self.assertIn("skin_colour", Client("/no_file", timeout=60).get_configuration())
 
     def test_scene_with_a_fault(self):
         self.check("/bad_scene", "five_faults.yaml:")
