@@ -56,6 +56,32 @@ void halve(RenderMesh& mesh)
   mesh.triangles = std::move(finer);
 }
 
+// Makes vertices at the same place one vertex, and leaves out triangles that have lost their area by that.
+void weld(RenderMesh& mesh)
+{
+  std::map<std::array<float, 3>, std::int32_t> known;
+  std::vector<std::int32_t> number;
+  RenderMesh out;
+  number.reserve(mesh.vertices.size());
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
+  {
+    const auto [found, is_new] = known.try_emplace(mesh.vertices[v], static_cast<std::int32_t>(out.vertices.size()));
+    number.push_back(found->second);
+    if (!is_new)
+      continue;
+    out.vertices.push_back(mesh.vertices[v]);
+    out.colours.push_back(mesh.colours[v]);
+    out.labels.push_back(mesh.labels[v]);
+  }
+  for (const auto& t : mesh.triangles)
+  {
+    const auto of = [&](std::size_t corner) { return number[static_cast<std::size_t>(t[corner])]; };
+    if (of(0) != of(1) && of(1) != of(2) && of(2) != of(0))
+      out.triangles.push_back({ of(0), of(1), of(2) });
+  }
+  mesh = std::move(out);
+}
+
 }  // namespace
 
 RenderMesh painted_teeth(const TriangleMesh& surface, bool lower, double corner_height)
@@ -98,6 +124,8 @@ RenderMesh painted_teeth(const TriangleMesh& surface, bool lower, double corner_
     mesh.colours.push_back(colour);
     mesh.labels.push_back(body_label);
   }
+  // What lay beyond the edges is now on them.
+  weld(mesh);
   return mesh;
 }
 

