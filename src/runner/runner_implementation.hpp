@@ -65,7 +65,7 @@ struct Runner::Implementation
   Clock::time_point start = Clock::now();
   Clock::time_point last_monitor{};
   Clock::time_point last_told{};  // when time and activations were last handed out
-  Profile last_profile;  ///< of the solver at the latest renewal of the monitor
+  Profile last_profile;           ///< of the solver at the latest renewal of the monitor
   std::thread thread;
 
   /// Wall time per frame [s].

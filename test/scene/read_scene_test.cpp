@@ -390,7 +390,6 @@ TEST(EveryKey, output_time_and_accuracy)
   EXPECT_EQ(scene.profiles[0].measured.cost, 0.8);
   EXPECT_EQ(scene.profiles[0].measured.machine, "a bench");
   EXPECT_EQ(scene.profiles[1].measured.cost, 0);
-
   // keys that a profile leaves out have their defaults, not the values of another profile
   expect_vector(scene.profiles[2].voxel, { 1e-3, 1e-3, 1e-3 });
   EXPECT_EQ(scene.profiles[2].samples, 4);

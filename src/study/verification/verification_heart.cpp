@@ -1,7 +1,7 @@
 // Cardiac mechanics benchmark, problems 1 and 3: Land et al. 2015, Proc. R. Soc. A 471:20150641.
 
-#include "frontalis/physics/number.hpp"
 #include "frontalis/physics/materials/all.hpp"
+#include "frontalis/physics/number.hpp"
 #include "study/verification/verification_cases.hpp"
 
 #include <fmt/core.h>

@@ -1,7 +1,7 @@
 // Contact with rigid bodies: a sphere on a layer.
 
-#include "frontalis/physics/number.hpp"
 #include "frontalis/model/sample_field.hpp"
+#include "frontalis/physics/number.hpp"
 #include "study/verification/verification_cases.hpp"
 
 #include <cmath>
