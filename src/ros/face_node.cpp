@@ -217,8 +217,11 @@ void FaceNode::on_frame(const Frame& frame, std::uint64_t face)
 void FaceNode::on_progress(const Frame& frame, std::uint64_t face)
 {
   const std::lock_guard<std::mutex> lock(frame_mutex_);
-  if (face == present_face_)
-    publisher_.publish_state(frame, ros::Time::now(), paused_);
+  if (face != present_face_)
+    return;
+  // The frame before is not sent again now, because its state is older.
+  last_published_ = ros::WallTime::now();
+  publisher_.publish_state(frame, ros::Time::now(), paused_);
 }
 
 // logs the real-time factor once it has settled

@@ -180,19 +180,28 @@ void Runner::Implementation::run_frame()
   const double end = settings.pace == Pace::fastest
                          ? time() + 1e9
                          : time() + clock.behind(Clock::now(), time(), 2 * period()) + period();
+  bool has_told = false;
   for (int slices = 0; !frame.failed && time() < end && (slices < least_slices || Clock::now() < deadline); ++slices)
   {
     if (slices > 0 && settings.on_progress && Clock::now() - last_told > progress_period)
     {
       note_progress();
       settings.on_progress(frame);
+      has_told = true;
     }
     const double seconds = std::min(end - time(), slice());
     Controls controls;
     {
-      const std::lock_guard<std::mutex> lock(mutex);
+      std::unique_lock<std::mutex> lock(mutex);
       if (stop || paused || reset_wanted || step_request != nullptr)
+      {
+        // The face stands still, so its frame must not be older than the progress that was told.
+        const bool is_late = has_told && paused && !stop;
+        lock.unlock();
+        if (is_late)
+          publish();
         return;
+      }
       controls = controls_after(seconds);
     }
     advance(seconds, controls);

@@ -1,6 +1,7 @@
 #include "scene/sections.hpp"
 
 #include "frontalis/physics/materials/lookup.hpp"
+#include "frontalis/physics/number.hpp"
 
 #include <filesystem>
 
@@ -75,7 +76,7 @@ void read_directions(int count, Mapping& mapping, const SceneNames& names, Scene
     Mapping about(families);
     material.about = about.required("about", "a muscle").text();  // muscles are read later: see check_tissues()
     material.angle = about.required("angle", "an angle from 0 to 90 degrees")
-                         .number(Dimension::angle, Bound{ 0, 0.5 * 3.14159265358979323846, true, true }, 0);
+                         .number(Dimension::angle, Bound{ 0, 0.5 * physics::pi, true, true }, 0);
     material.along =
         mapping.required("along", "the surface to which the fibres are parallel").reference(names.surfaces);
     return;

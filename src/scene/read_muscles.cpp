@@ -114,7 +114,10 @@ void read_tension(Mapping& mapping, const Scene& scene, const SceneNames& names,
     return;
   if (material->tension == 0)
     of.fault("material '{}' has no 'tension'", name);
+  // Values of a set that this muscle is an entry of do not count.
   muscle.stress_reference = material->tension;
+  muscle.cross_section = 0;
+  muscle.passive = false;
   muscle.tension_length = false;
   muscle.tone = 1;
 }

@@ -1,6 +1,7 @@
 // Skin whose fibres lie about lines of least tension, stretched along the lines, across them and in both directions.
 
 #include "frontalis/physics/materials/all.hpp"
+#include "frontalis/physics/number.hpp"
 #include "study/verification/verification_cases.hpp"
 
 #include <Eigen/Dense>
@@ -73,7 +74,7 @@ void verify_orthotropic_skin(const Backend& backend, Finding& finding)
 {
   constexpr double edge = 1e-3, length = 2 * edge, poisson = 0.49;
   // At small strain 41 kPa along the lines and 21 kPa across them.
-  OrthotropicSkin skin{ 7e3, 37e3, 1, 0.1, 36 * 3.14159265358979 / 180, 0 };
+  OrthotropicSkin skin{ 7e3, 37e3, 1, 0.1, 36 * physics::pi / 180, 0 };
   Material material = neo_hookean(2 * skin.shear * (1 + poisson), poisson);
   skin.bulk = material.parameters[physics::bulk_modulus_slot];
   material.law = law_of<physics::HolzapfelGasserOgden>;
