@@ -1,4 +1,4 @@
-#include "cuda/backend/highest_frequency.hpp"
+#include "cuda/backend/cuda_solver.hpp"
 
 namespace frontalis
 {
@@ -10,24 +10,21 @@ struct CudaSolver::State : BackendState
 {
   cudaStream_t stream = nullptr;  // stream on which the copy is queued
   DeviceArray<char> bytes;
-  std::size_t mode_bytes = 0;  // size of the mode of the highest frequency [bytes]; 0 if the state has none
   struct
   {
     std::int64_t plans = 0;
-    double mode_largest = 0, mode_length = 0;
-    bool has_mode = false, still_moved = false;
+    bool still_moved = false;
   } host;
 
   void archive(ByteArchive& archive) override
   {
     require(cudaStreamSynchronize(stream), "waiting for a snapshot");
-    const std::size_t without_mode = bytes.size() - (host.has_mode ? mode_bytes : 0);
-    archive(host.plans)(host.mode_largest)(host.mode_length)(host.has_mode)(host.still_moved);
+    const std::size_t size = bytes.size();
+    archive(host.plans)(host.still_moved);
     std::vector<char> values;
     if (!archive.reads())
       bytes.download(values);
     archive(values);
-    const std::size_t size = without_mode + (host.has_mode ? mode_bytes : 0);
     if (values.size() != size)
       throw Error("a state of " + std::to_string(values.size()) + " bytes; allowed are " + std::to_string(size));
     if (archive.reads())
@@ -59,23 +56,13 @@ void CudaSolver::save(std::unique_ptr<BackendState>& to)
   if (state.bytes.size() != list.state_bytes())
     state.bytes = DeviceArray<char>(list.state_bytes());
   state.stream = stream_;
-  state.mode_bytes = u_[0].bytes();
-  state.host = { plans_, mode_ ? mode_->largest : 0, mode_ ? mode_->length : 0, mode_ != nullptr, still_moved_ };
+  state.host = { plans_, still_moved_ };
   copy_state(state, false);
 }
 
 void CudaSolver::restore(const BackendState& from)
 {
   const auto& state = static_cast<const State&>(from);
-  if (!state.host.has_mode)
-    mode_.reset();
-  else if (!mode_)
-    mode_.reset(new Mode(device_.nodes()));
-  if (mode_)
-  {
-    mode_->largest = state.host.mode_largest;
-    mode_->length = state.host.mode_length;
-  }
   plans_ = state.host.plans;
   still_moved_ = state.host.still_moved;
   copy_state(state, true);

@@ -91,7 +91,6 @@ void CudaSolver::rest()
   for (auto& component : v_)
     component.clear();
   device_.reset();
-  mode_.reset();
   require(cudaDeviceSynchronize(), "coming to rest");
 }
 
@@ -122,11 +121,8 @@ void CudaSolver::list_arrays(ArrayList& list)
     account_->list_arrays(effect_of_fibres(*model_), list);
   if (monitor_)
     list.add(Effect::elasticity, "what the monitor looks at", monitor_->bytes());
-  if (mode_)
-  {
-    list.add(Effect::elasticity, "mode of the highest frequency", mode_->bytes());
-    list.add_state(mode_->mode.data(), mode_->mode.bytes());
-  }
+  if (search_)
+    list.add(Effect::elasticity, "search for the highest frequency", search_->bytes());
 }
 
 void CudaSolver::set(NodalField field, const NodalVectors& in)

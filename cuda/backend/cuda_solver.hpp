@@ -40,7 +40,7 @@ public:
   void save(std::unique_ptr<BackendState>& to) override;
   void restore(const BackendState& from) override;
   void internal_forces(const NodalVectors* displacements, NodalVectors& out) override;
-  std::optional<double> highest_frequency_squared(int most_iterations) override;
+  std::optional<double> highest_frequency_squared() override;
   Monitor monitor() override;
   Work work(bool open) override;
   void add_energies(bool open, NodalVectors& forces, EnergyLedger& ledger) override;
@@ -67,11 +67,12 @@ private:
 
   struct State;
   void copy_state(const State& state, bool back);
-  struct Mode;
-  struct ModeDeleter
+  struct FrequencySearch;
+  struct SearchDeleter
   {
-    void operator()(Mode* mode) const;
+    void operator()(FrequencySearch* search) const;
   };
+  void prepare_search();
 
   const std::string remark_;  // appended to the description
   DeviceModel device_;
@@ -89,8 +90,8 @@ private:
   bool still_moved_ = false;  // whether displacements of nodes that never move were set from outside
   StepLaunch launch_{};
   std::unique_ptr<DeviceAccount> account_;
-  std::unique_ptr<DeviceMonitor> monitor_;   // made on first use
-  std::unique_ptr<Mode, ModeDeleter> mode_;  // mode of the highest frequency
+  std::unique_ptr<DeviceMonitor> monitor_;                  // made on first use
+  std::unique_ptr<FrequencySearch, SearchDeleter> search_;  // made on first use
 };
 
 }  // namespace cuda

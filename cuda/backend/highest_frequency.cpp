@@ -1,72 +1,98 @@
 #include "cuda/backend/highest_frequency.hpp"
 
-#include "solver/stepping/highest_frequency_search.hpp"
-
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 namespace frontalis
 {
 namespace cuda
 {
+namespace
+{
 
-void CudaSolver::ModeDeleter::operator()(Mode* mode) const { delete mode; }
+// The host waits for the iterations of a search after each series of this length.
+constexpr int series = 8;
 
-std::optional<double> CudaSolver::highest_frequency_squared(int most_iterations)
+}  // namespace
+
+void CudaSolver::SearchDeleter::operator()(FrequencySearch* search) const { delete search; }
+
+/// Allocates the memory of the search, and writes its random start and the sums of that.
+void CudaSolver::prepare_search()
+{
+  search_.reset(new FrequencySearch(device_.nodes()));
+  NodalVectors random = random_mode(model_->nodes.size());
+  for (const auto n : discretisation_.held)
+    random[n] = {};
+  std::vector<float4> values(device_.nodes(), float4{ 0, 0, 0, 0 });
+  std::vector<double2> size(lanczos_blocks, double2{ 0, 0 });
+  for (std::size_t n = 0; n < random.size(); ++n)
+  {
+    const auto& x = random[n];
+    values[device_.device_node()[n]] = { static_cast<float>(x[0]), static_cast<float>(x[1]), static_cast<float>(x[2]),
+                                         0 };
+    for (const double c : x)
+      size[0] = { size[0].x + c * c, std::max(size[0].y, std::abs(c) / std::sqrt(discretisation_.node_mass[n])) };
+  }
+  search_->start.upload(values.data(), values.size());
+  search_->sizes.upload(size.data(), size.size());
+}
+
+std::optional<double> CudaSolver::highest_frequency_squared()
 {
   synchronise();
-  if (!mode_)
-  {
-    mode_.reset(new Mode(device_.nodes()));
-    const NodalVectors random = random_mode(model_->nodes.size());
-    std::vector<float4> values(device_.nodes(), float4{ 0, 0, 0, 0 });
-    for (std::size_t n = 0; n < random.size(); ++n)
-    {
-      const auto& x = random[n];
-      values[device_.device_node()[n]] = { static_cast<float>(x[0]), static_cast<float>(x[1]), static_cast<float>(x[2]),
-                                           0 };
-      for (const double c : x)
-      {
-        mode_->largest = std::max(mode_->largest, std::abs(c) / std::sqrt(discretisation_.node_mass[n]));
-        mode_->length += c * c;
-      }
-    }
-    mode_->length = std::sqrt(mode_->length);
-    mode_->mode.upload(values.data(), values.size());
-  }
-  Mode& m = *mode_;
-  const auto nodes = static_cast<std::uint32_t>(device_.nodes());
-  const float4* const u = u_[present_].data();
-  const float* const mobility = device_.arguments().mobility;
+  if (!search_)
+    prepare_search();
+  FrequencySearch& s = *search_;
   const DeviceArray<float> activation(conditions_.activation);
-  queue_forces(u_[present_].data(), activation.data(), m.present.data(), true);
-  std::vector<double2> seen;
-  const auto multiply = [&](double step)
+  queue_forces(u_[present_].data(), activation.data(), s.present.data(), true);
+  for (const auto* vector : { &s.now, &s.before })
+    require(cudaMemcpyAsync(vector->data(), s.start.data(), s.start.bytes(), cudaMemcpyDeviceToDevice, stream_),
+            "starting a search");
+  LanczosIteration g{};
+  g.nodes = static_cast<std::uint32_t>(device_.nodes());
+  g.mobility = device_.arguments().mobility;
+  g.u = u_[present_].data();
+  g.present = s.present.data();
+  g.forces = s.forces.data();
+  g.now = s.now.data();
+  g.before = s.before.data();
+  g.moved = s.moved.data();
+  LanczosMatrix matrix;
+  std::vector<double2> sizes;
+  std::vector<double> along;
+  for (int i = 0; i < lanczos_iterations && !matrix.settled();)
   {
-    require(launch_displace(nodes, mobility, u, m.mode.data(), static_cast<float>(step / m.largest), m.moved.data(),
-                            stream_),
-            "displacing nodes");
-    queue_forces(m.moved.data(), activation.data(), m.forces.data(), true);
-    require(launch_product(nodes, mobility, u, m.forces.data(), m.present.data(), static_cast<float>(1 / step),
-                           m.mode.data(), m.seen.data(), stream_),
-            "a product with the stiffness");
-    synchronise();
-    m.seen.download(seen);
-    double largest = 0, sum = 0;
-    for (const double2& s : seen)
+    for (const int end = i + series; i < end; ++i)
     {
-      largest = std::max(largest, s.x);
-      sum += s.y;
+      g.amplitude = mode_amplitude(*model_, i);
+      g.size_before = i == 0 ? nullptr : g.size;
+      g.size = s.sizes.data() + i * lanczos_blocks;
+      g.size_next = s.sizes.data() + (i + 1) * lanczos_blocks;
+      g.along = s.along.data() + i * lanczos_blocks;
+      require(launch_displace(g, stream_), "displacing nodes");
+      queue_forces(s.moved.data(), activation.data(), s.forces.data(), true);
+      require(launch_lanczos_product(g, stream_), "a product with the stiffness");
+      std::swap(g.now, g.before);
     }
-    const double ratio = std::sqrt(sum) * m.largest / m.length;
-    m.largest = largest;
-    m.length = std::sqrt(sum);
-    return ratio;
-  };
-  const double squared = largest_eigenvalue(most_iterations, mode_amplitude(*model_), multiply);
-  if (!std::isfinite(squared))
-    mode_.reset();
-  return squared;
+    synchronise();
+    s.sizes.download(sizes);
+    s.along.download(along);
+    for (int row = static_cast<int>(matrix.rows()); row < i; ++row)
+    {
+      const auto length = [&](int vector)
+      {
+        const double2* const of = sizes.data() + vector * lanczos_blocks;
+        return std::sqrt(std::accumulate(of, of + lanczos_blocks, 0.0,
+                                         [](double sum, const double2& part) { return sum + part.x; }));
+      };
+      const double* const product = along.data() + row * lanczos_blocks;
+      matrix.add_row(std::accumulate(product, product + lanczos_blocks, 0.0) / length(row), length(row + 1));
+    }
+  }
+  return matrix.largest_eigenvalue();
 }
 
 }  // namespace cuda

@@ -1,28 +1,36 @@
 #pragma once
 
 #include "cuda/backend/cuda_solver.hpp"
+#include "cuda/kernels/lanczos_kernels.hpp"
+#include "solver/stepping/highest_frequency_search.hpp"
 
 namespace frontalis
 {
 namespace cuda
 {
 
-/// The mode of the highest frequency, and memory for its product with the stiffness. The mode is not normalised:
-/// products use the mode divided by `largest`.
-struct CudaSolver::Mode
+/// Memory of the search for the highest frequency.
+struct CudaSolver::FrequencySearch
 {
-  DeviceArray<float4> mode, moved, forces, present;
-  DeviceArray<double2> seen;
-  double largest, length;
+  DeviceArray<float4> start, now, before, moved, forces, present;
+  DeviceArray<double2> sizes;  // per vector
+  DeviceArray<double> along;   // per iteration
 
-  explicit Mode(std::size_t nodes)
-      : mode(nodes), moved(nodes), forces(nodes), present(nodes), seen(product_blocks), largest(0), length(0)
+  explicit FrequencySearch(std::size_t nodes)
+      : start(nodes),
+        now(nodes),
+        before(nodes),
+        moved(nodes),
+        forces(nodes),
+        present(nodes),
+        sizes((lanczos_iterations + 1) * lanczos_blocks),
+        along(lanczos_iterations * lanczos_blocks)
   {
     for (const auto* field : { &forces, &present })
       require(cudaMemset(field->data(), 0, field->bytes()), "clearing forces");
   }
 
-  std::size_t bytes() const { return mode.bytes() + moved.bytes() + forces.bytes() + present.bytes() + seen.bytes(); }
+  std::size_t bytes() const { return 6 * start.bytes() + sizes.bytes() + along.bytes(); }
 };
 
 }  // namespace cuda

@@ -144,44 +144,6 @@ __global__ void __launch_bounds__(block)
   account.load[l] += g.kick * work;
 }
 
-__global__ void __launch_bounds__(block)
-    displace(std::uint32_t nodes, const float* mobility, const float4* u, const float4* mode, float amount, float4* out)
-{
-  const std::uint32_t n = blockIdx.x * block + threadIdx.x;
-  if (n >= nodes)
-    return;
-  const float4 at = u[n], along = mode[n];
-  const float share = amount * sqrtf(mobility == nullptr ? at.w : mobility[n]);
-  out[n] = make_float4(at.x + share * along.x, at.y + share * along.y, at.z + share * along.z, at.w);
-}
-
-__global__ void __launch_bounds__(block)
-    product(std::uint32_t nodes, const float* mobility, const float4* u, const float4* forces, const float4* present,
-            float factor, float4* mode, double2* seen)
-{
-  __shared__ double2 own[block];
-  double2 sum{ 0, 0 };
-  for (std::uint32_t n = blockIdx.x * block + threadIdx.x; n < nodes; n += product_blocks * block)
-  {
-    const float4 p = forces[n], m = present[n];
-    const float root = sqrtf(mobility == nullptr ? u[n].w : mobility[n]), share = factor * root;
-    const float4 now = make_float4(share * (p.x - m.x), share * (p.y - m.y), share * (p.z - m.z), 0);
-    mode[n] = now;
-    sum.x = fmax(sum.x, double(root) * fmax(fabs(now.x), fmax(fabs(now.y), fabs(now.z))));
-    sum.y += double(now.x) * now.x + double(now.y) * now.y + double(now.z) * now.z;
-  }
-  own[threadIdx.x] = sum;
-  for (int half = block / 2; half > 0; half /= 2)
-  {
-    __syncthreads();
-    if (threadIdx.x < half)
-      own[threadIdx.x] = { fmax(own[threadIdx.x].x, own[threadIdx.x + half].x),
-                           own[threadIdx.x].y + own[threadIdx.x + half].y };
-  }
-  if (threadIdx.x == 0)
-    seen[blockIdx.x] = own[0];
-}
-
 namespace
 {
 
@@ -219,20 +181,6 @@ cudaError_t launch_node_account(const StepArguments& arguments, const NodeAccoun
   cuda::node_work<<<cuda::blocks(account.nodes), cuda::block, 0, stream>>>(arguments, account, damping);
   if (account.loaded_nodes > 0)
     cuda::load_work<<<cuda::blocks(account.loaded_nodes), cuda::block, 0, stream>>>(arguments, account, step);
-  return cudaGetLastError();
-}
-
-cudaError_t launch_displace(std::uint32_t nodes, const float* mobility, const float4* u, const float4* mode,
-                            float amount, float4* out, cudaStream_t stream)
-{
-  cuda::displace<<<cuda::blocks(nodes), cuda::block, 0, stream>>>(nodes, mobility, u, mode, amount, out);
-  return cudaGetLastError();
-}
-
-cudaError_t launch_product(std::uint32_t nodes, const float* mobility, const float4* u, const float4* forces,
-                           const float4* present, float factor, float4* mode, double2* seen, cudaStream_t stream)
-{
-  cuda::product<<<product_blocks, cuda::block, 0, stream>>>(nodes, mobility, u, forces, present, factor, mode, seen);
   return cudaGetLastError();
 }
 

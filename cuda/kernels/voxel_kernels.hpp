@@ -57,17 +57,4 @@ cudaError_t launch_fibre_work(const StepArguments& arguments, const FibreVoxels&
 cudaError_t launch_node_account(const StepArguments& arguments, const NodeAccount& account, double damping, int step,
                                 cudaStream_t stream);
 
-/// out = u + amount * mode / sqrt(mass). Held nodes do not move (StepArguments::mobility).
-cudaError_t launch_displace(std::uint32_t nodes, const float* mobility, const float4* u, const float4* mode,
-                            float amount, float4* out, cudaStream_t stream);
-
-/// Number of blocks of launch_product(). Each block reports two numbers about its part of the mode: the largest
-/// |component| / sqrt(mass), and the sum of the squared components.
-constexpr int product_blocks = 128;
-
-/// mode = (forces - present) * factor / sqrt(mass), and 0 at held nodes. `seen`: receives the two numbers of each
-/// block.
-cudaError_t launch_product(std::uint32_t nodes, const float* mobility, const float4* u, const float4* forces,
-                           const float4* present, float factor, float4* mode, double2* seen, cudaStream_t stream);
-
 }  // namespace frontalis

@@ -8,55 +8,46 @@ namespace frontalis
 namespace
 {
 
-// Margins are needed, because power iteration gives too low an eigenvalue, and the model may stiffen until the next
-// search.
+// Margins are needed, because the search finds too low an eigenvalue, and the model may stiffen until the next search.
 constexpr double frequency_margin = 1.05;  // factor on the squared frequency
-// replaces `frequency_margin` in the first search and after recent changes of activation
-constexpr double margin_after_change = 1.25;
-// largest number of steps for which a search is valid; a search takes about 1 % of the time of 2000 steps
-constexpr std::int64_t longest_valid = 2000;
-// number of steps without a search after a change of activation; each search then doubles the number
-constexpr std::int64_t shortest_valid = 200;
-constexpr float activation_allowed = 0.1F;  // change of a muscle's activation since the search
-constexpr double growth_allowed = 1.02;     // allowed growth of the squared frequency bound at nodes since the search
-// A search starts from the mode of the previous search. The first search starts from random numbers and needs more
-// iterations.
-constexpr int iterations = 16;
-constexpr int first_iterations = 300;
+// replaces `frequency_margin` while searches are frequent
+constexpr double margin_in_motion = 1.25;
+// Numbers of steps between searches. A search takes as long as about 40 steps. After a change of activations or while
+// bones move, the tissue stiffens as it follows: the number is then the shortest, and doubles with each search.
+constexpr std::int64_t shortest_valid = 200, longest_valid = 2000;
+// The ratio is found for activations that are higher by this much than the present ones, so that searches are few while
+// activations grow.
+constexpr float activation_ahead = 0.2F;
+constexpr float activation_tolerance = 0.02F;  // replaces `activation_ahead` where activations rest
+// If the bound at nodes grows by this factor, the estimate has grown with it, perhaps without need.
+constexpr double growth_allowed = 1.1;
+constexpr std::int64_t steps_until_growth_counts = 100;
 
 }  // namespace
 
-double AssembledEstimate::frequency_squared(double bound) const
-{
-  return share_ < 1 ? share_ * std::max(bound, bound_) : bound;
-}
+double AssembledEstimate::bound_covered(double bound) const { return share_ < 1 ? std::max(bound, bound_) : bound; }
 
-void AssembledEstimate::renew(const std::vector<float>& activation, const std::vector<float>& asked, double bound,
-                              const std::function<double(int)>& search)
+void AssembledEstimate::renew(const std::vector<float>& activation, bool moving, double bound, const Search& search)
 {
-  // Fibres stiffen as they are activated, and the tissue that they pull stiffens later. Until then the bound at nodes
-  // is used.
-  bool changed = false;
-  activation_.resize(asked.size());
-  for (std::size_t m = 0; m < asked.size(); ++m)
-    changed = changed || std::abs(std::max(activation[m], asked[m]) - activation_[m]) > activation_allowed;
-  if (changed)
-  {
-    for (std::size_t m = 0; m < asked.size(); ++m)
-      activation_[m] = std::max(activation[m], asked[m]);
-    share_ = 1;
+  activation_.resize(activation.size());
+  bool activated = false;
+  for (std::size_t m = 0; m < activation.size(); ++m)
+    activated = activated || activation[m] > activation_[m];
+  if (moving)
+    steps_valid_ = std::min(steps_valid_, shortest_valid);
+  const bool grown = bound > growth_allowed * bound_ && steps_ >= steps_until_growth_counts;
+  if (bound_ > 0 && !activated && !grown && steps_ < steps_valid_)
+    return;
+  const float ahead = activated ? activation_ahead : activation_tolerance;
+  for (std::size_t m = 0; m < activation.size(); ++m)
+    activation_[m] = activation[m] > 0 ? std::min(1.0F, activation[m] + ahead) : 0;
+  const double found = search(activation_);
+  if (bound_ == 0 || activated || moving)
     steps_valid_ = shortest_valid;
-    steps_ = 0;
-    return;
-  }
-  const bool waiting = steps_valid_ == shortest_valid && share_ == 1;
-  const bool holds = bound_ > 0 && bound <= growth_allowed * bound_;
-  if (steps_ < steps_valid_ && (waiting || holds))
-    return;
-  const double found = search(bound_ > 0 ? iterations : first_iterations);
-  const double allowance = steps_valid_ < longest_valid ? margin_after_change : frequency_margin;
-  share_ = std::isfinite(found) ? std::min(1.0, allowance * found / bound) : 1.0;
-  steps_valid_ = steps_valid_ > 0 ? std::min(2 * steps_valid_, longest_valid) : longest_valid;
+  else if (!grown)
+    steps_valid_ = std::min(2 * steps_valid_, longest_valid);
+  const double allowance = steps_valid_ < longest_valid ? margin_in_motion : frequency_margin;
+  share_ = found > 0 && std::isfinite(found) ? std::min(1.0, allowance * found / bound) : 1.0;
   steps_ = 0;
   bound_ = bound;
 }

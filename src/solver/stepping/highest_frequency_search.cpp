@@ -1,6 +1,8 @@
 #include "solver/stepping/highest_frequency_search.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <random>
 
 namespace frontalis
@@ -8,19 +10,73 @@ namespace frontalis
 namespace
 {
 
-// Squared length of a mode, and the largest displacement of a node along an axis in the mode.
-struct ModeSize
+// The eigenvalue has settled after at least `fewest_rows` if the last two rows raised it by less than `tolerance`.
+constexpr std::size_t fewest_rows = 8;
+constexpr double tolerance = 5e-3;
+// The iteration ends where a vector's image lies along itself and the vector before, but for rounding.
+constexpr double smallest_remainder = 1e-6;
+
+// A vector of the iteration, its squared length, and the largest displacement of a node along an axis in it.
+struct LanczosVector
 {
+  NodalVectors value;
   double squared_length = 0, largest = 0;
 
-  void add(double x, double root)
+  void measure(const std::vector<double>& root)
   {
-    squared_length += x * x;
-    largest = std::max(largest, std::abs(x) * root);
+    squared_length = largest = 0;
+    for (std::size_t n = 0; n < root.size(); ++n)
+      for (const double x : value[n])
+      {
+        squared_length += x * x;
+        largest = std::max(largest, std::abs(x) * root[n]);
+      }
   }
 };
 
 }  // namespace
+
+// The largest eigenvalue is found by bisection: a number is above all eigenvalues if all pivots of the matrix minus
+// this number are negative.
+void LanczosMatrix::add_row(double diagonal, double beside)
+{
+  diagonal_.push_back(diagonal);
+  beside_.push_back(beside);
+  largest_.push_back(std::numeric_limits<double>::quiet_NaN());
+  double low = 0, high = 0;
+  for (std::size_t i = 0; i < rows(); ++i)
+  {
+    if (!std::isfinite(diagonal_[i]) || !std::isfinite(beside_[i]))
+      return;
+    low = std::max(low, diagonal_[i]);
+    high = std::max(high, diagonal_[i] + (i > 0 ? beside_[i - 1] : 0) + (i + 1 < rows() ? beside_[i] : 0));
+  }
+  const auto is_above = [this](double number)
+  {
+    double pivot = diagonal_[0] - number;
+    for (std::size_t i = 1; pivot < 0 && i < rows(); ++i)
+      pivot = diagonal_[i] - number - beside_[i - 1] * beside_[i - 1] / pivot;
+    return pivot < 0;
+  };
+  while (high - low > 1e-6 * high)
+    (is_above(0.5 * (low + high)) ? high : low) = 0.5 * (low + high);
+  largest_.back() = high;
+}
+
+double LanczosMatrix::largest_eigenvalue() const
+{
+  return largest_.empty() ? std::numeric_limits<double>::quiet_NaN() : largest_.back();
+}
+
+bool LanczosMatrix::settled() const
+{
+  if (largest_.empty())
+    return false;
+  const double found = largest_.back();
+  if (!std::isfinite(found) || beside_.back() < smallest_remainder * found)
+    return true;
+  return rows() >= fewest_rows && found - largest_[rows() - 3] < tolerance * found;
+}
 
 NodalVectors random_mode(std::size_t nodes)
 {
@@ -32,16 +88,17 @@ NodalVectors random_mode(std::size_t nodes)
   return mode;
 }
 
-double mode_amplitude(const Model& model)
+double mode_amplitude(const Model& model, int iteration)
 {
-  return 1e-3 * *std::min_element(model.spacing.begin(), model.spacing.end());
+  const double amplitude = 1e-3 * *std::min_element(model.spacing.begin(), model.spacing.end());
+  return iteration % 2 == 0 ? amplitude : -amplitude;
 }
 
 double highest_frequency_squared(const Model& model, const Discretisation& discretisation, const NodalVectors& u,
-                                 const std::function<void(const NodalVectors& at, NodalVectors& out)>& internal_forces,
-                                 int most_iterations, NodalVectors& mode)
+                                 const std::function<void(const NodalVectors& at, NodalVectors& out)>& internal_forces)
 {
   std::vector<double> root;  // square root of each node's inverse mass; 0: the node is held
+  root.reserve(u.size());
   for (const double mass : discretisation.node_mass)
     root.push_back(1 / std::sqrt(mass));
   for (const auto n : discretisation.held)
@@ -54,20 +111,21 @@ double highest_frequency_squared(const Model& model, const Discretisation& discr
       root[node.master] = 1 / std::sqrt(1 / (root[node.master] * root[node.master]) +
                                         node.ratio * node.ratio * discretisation.node_mass[node.node]);
   }
-  if (mode.empty())
-    mode = random_mode(root.size());
-  ModeSize size;
-  for (std::size_t n = 0; n < root.size(); ++n)
-    for (const double x : mode[n])
-      size.add(x, root[n]);
   NodalVectors moved(root.size()), present, forces;
   internal_forces(u, present);
-  const auto multiply = [&](double step)
+  LanczosVector now{ random_mode(root.size()) }, before{ NodalVectors(root.size()) };
+  for (std::size_t n = 0; n < root.size(); ++n)
+    if (root[n] == 0)
+      now.value[n] = {};
+  now.measure(root);
+  double length_before = 1;
+  LanczosMatrix matrix;
+  for (int iteration = 0; iteration < lanczos_iterations && !matrix.settled() && now.largest > 0; ++iteration)
   {
-    const double scale = step / size.largest, length = std::sqrt(size.squared_length);
+    const double scale = mode_amplitude(model, iteration) / now.largest, length = std::sqrt(now.squared_length);
     for (std::size_t n = 0; n < root.size(); ++n)
       for (int axis = 0; axis < 3; ++axis)
-        moved[n][axis] = u[n][axis] + scale * root[n] * mode[n][axis];
+        moved[n][axis] = u[n][axis] + scale * root[n] * now.value[n][axis];
     for (const auto& node : followers)
       for (std::size_t axis = 0; axis < 3; ++axis)
         moved[node.node][axis] += node.ratio * (moved[node.master][axis] - u[node.master][axis]);
@@ -75,22 +133,25 @@ double highest_frequency_squared(const Model& model, const Discretisation& discr
     for (const auto& node : followers)
       for (std::size_t axis = 0; axis < 3; ++axis)
         forces[node.master][axis] += node.ratio * (forces[node.node][axis] - present[node.node][axis]);
-    size = {};
+    // image of `now` at unit length, without its part along the vector before
+    double along = 0;
+    const double back = iteration == 0 ? 0 : length / length_before;
     for (std::size_t n = 0; n < root.size(); ++n)
-    {
-      const double share = root[n] / (scale * length);
       for (int axis = 0; axis < 3; ++axis)
       {
-        mode[n][axis] = share * (forces[n][axis] - present[n][axis]);
-        size.add(mode[n][axis], root[n]);
+        double& x = before.value[n][axis];
+        x = root[n] / (scale * length) * (forces[n][axis] - present[n][axis]) - back * x;
+        along += x * now.value[n][axis];
       }
-    }
-    return std::sqrt(size.squared_length);
-  };
-  const double squared = largest_eigenvalue(most_iterations, mode_amplitude(model), multiply);
-  if (!std::isfinite(squared))
-    mode.clear();
-  return squared;
+    for (std::size_t n = 0; n < root.size(); ++n)
+      for (int axis = 0; axis < 3; ++axis)
+        before.value[n][axis] -= along / now.squared_length * now.value[n][axis];
+    before.measure(root);
+    matrix.add_row(along / length, std::sqrt(before.squared_length));
+    length_before = length;
+    std::swap(now, before);
+  }
+  return matrix.largest_eigenvalue();
 }
 
 }  // namespace frontalis

@@ -2,45 +2,47 @@
 
 #include "solver/stepping/step_backend.hpp"
 
-#include <cmath>
 #include <functional>
+#include <vector>
 
 namespace frontalis
 {
 
-/// Largest eigenvalue of a matrix by power iteration. `multiply(step)` replaces a mode by its product with the matrix
-/// and returns the ratio of their lengths. The product is a difference of forces for a displacement by `step` [m] along
-/// the mode. The sign of `step` alternates, so that errors from the curvature of the laws cancel. The iteration stops
-/// early if the eigenvalue has settled or is not finite.
-template <class Multiply>
-double largest_eigenvalue(int most_iterations, double step, const Multiply& multiply)
+/// The tridiagonal matrix of a Lanczos iteration. Its largest eigenvalue approaches that of the iterated matrix from
+/// below (Golub & Van Loan, Matrix Computations, 4th ed., section 10.1).
+class LanczosMatrix
 {
-  constexpr int fewest_iterations = 9;
-  constexpr double tolerance = 2e-4;  // relative to the previous iteration with the same sign
-  double eigenvalue = 0, last = 0, before_last = 0;
-  for (int iteration = 1; iteration <= most_iterations; ++iteration, step = -step)
-  {
-    eigenvalue = multiply(step);
-    const bool settled = std::abs(eigenvalue - before_last) < tolerance * eigenvalue;
-    if ((iteration >= fewest_iterations && settled) || !std::isfinite(eigenvalue))
-      break;
-    before_last = last;
-    last = eigenvalue;
-  }
-  return eigenvalue;
-}
+public:
+  /// Adds the row of an iteration. `diagonal`: the product of the vector with its image. `beside`: length of what
+  /// remains of the image without its parts along the vector and the vector before, the next element beside the
+  /// diagonal.
+  void add_row(double diagonal, double beside);
+  std::size_t rows() const { return diagonal_.size(); }
+  /// NaN without rows, or if an element is not finite.
+  double largest_eigenvalue() const;
+  /// Whether further rows would change the largest eigenvalue by little, or by nothing that makes sense.
+  bool settled() const;
 
-/// random_mode() returns a start mode for largest_eigenvalue(), and mode_amplitude() the step [m]. Single precision
-/// resolves this step, and over its length the laws are nearly linear.
+private:
+  std::vector<double> diagonal_, beside_;
+  std::vector<double> largest_;  // eigenvalue of the first, first two, first three, ... rows
+};
+
+/// Number of iterations of a search. With as many, the eigenvalue of a vector of 100,000 random numbers is expected to
+/// be at most 4 % too low, whatever the matrix (Kuczynski & Wozniakowski 1992, SIAM J. Matrix Anal. Appl. 13:1094).
+constexpr int lanczos_iterations = 32;
+
+/// random_mode() returns the start of a search, and mode_amplitude() the largest displacement [m] in a product. Single
+/// precision resolves this displacement, and over its length the laws are nearly linear. The sign of the displacement
+/// alternates, so that errors from the curvature of the laws cancel.
 NodalVectors random_mode(std::size_t nodes);
-double mode_amplitude(const Model& model);
+double mode_amplitude(const Model& model, int iteration);
 
-/// Squared highest frequency [1/s2] of the assembled model at displacements u, by power iteration on M^-1/2 K M^-1/2.
-/// `mode`: start of the iteration, empty at first; receives the mode found. Products with K are differences of internal
-/// forces and therefore include every law and fibre. Held nodes do not move, and held attached nodes follow their
-/// masters. Other constraints could only lower the frequency and are omitted.
+/// Squared highest frequency [1/s2] of the assembled model at displacements u: the largest eigenvalue of M^-1/2 K
+/// M^-1/2 by Lanczos iteration. Products with K are differences of internal forces and therefore include every law and
+/// fibre. Held nodes do not move, and held attached nodes follow their masters. Other constraints could only lower the
+/// frequency and are omitted. NaN if no node can move or a force is not finite.
 double highest_frequency_squared(const Model& model, const Discretisation& discretisation, const NodalVectors& u,
-                                 const std::function<void(const NodalVectors& at, NodalVectors& out)>& internal_forces,
-                                 int most_iterations, NodalVectors& mode);
+                                 const std::function<void(const NodalVectors& at, NodalVectors& out)>& internal_forces);
 
 }  // namespace frontalis

@@ -78,7 +78,7 @@ public:
   virtual void internal_forces(const NodalVectors* displacements, NodalVectors& out) = 0;
   /// Largest eigenvalue [1/s2] of M^-1/2 K M^-1/2 at the present displacements with held nodes fixed. Returns nothing
   /// if the backend cannot search for it faster than internal_forces() allows.
-  virtual std::optional<double> highest_frequency_squared(int /*most_iterations*/) { return std::nullopt; }
+  virtual std::optional<double> highest_frequency_squared() { return std::nullopt; }
   virtual Monitor monitor() = 0;
   /// Work since the energy account was opened; with `open`, the account is opened now. Called only if
   /// SolverSettings::ledger is set.

@@ -148,7 +148,7 @@ void TimeStepper::advance(double seconds, const Controls& target)
   while (motion_.time < end)
   {
     if (model_->time_step_estimate == TimeStepEstimate::assembled)
-      renew_assembled_estimate(target.activation);
+      renew_assembled_estimate(target);
     const auto choice = controller_.choose(end - motion_.time, longest_step, traits_);
     const double reached = choice.reaches_end ? end : motion_.time + choice.steps * choice.dt;
     const Controls next = choice.reaches_end ? target : interpolate(from, target, (reached - begin) / seconds);
@@ -166,11 +166,12 @@ void TimeStepper::advance(double seconds, const Controls& target)
   motion_.controls = target;
 }
 
-void TimeStepper::renew_assembled_estimate(const std::vector<float>& asked)
+void TimeStepper::renew_assembled_estimate(const Controls& asked)
 {
-  const auto search = [this](int most_iterations)
+  const auto search = [this](const std::vector<float>& activation)
   {
-    if (const auto found = backend_->highest_frequency_squared(most_iterations))
+    conditions_.activation = effects_.felt(activation);
+    if (const auto found = backend_->highest_frequency_squared())
       return *found;
     NodalVectors u;
     displacements(u);
@@ -180,9 +181,15 @@ void TimeStepper::renew_assembled_estimate(const std::vector<float>& asked)
       for (const auto& stiffness : discretisation_.added)
         stiffness->add_forces(*model_, at, out);
     };
-    return highest_frequency_squared(*model_, discretisation_, u, forces_at, most_iterations, motion_.highest_mode);
+    return highest_frequency_squared(*model_, discretisation_, u, forces_at);
   };
-  controller_.assembled().renew(motion_.activation, asked, controller_.state().frequency_squared, search);
+  std::vector<float> most = motion_.activation;
+  for (std::size_t m = 0; m < most.size(); ++m)
+    most[m] = std::max(most[m], asked.activation[m]);
+  const bool bones_move = !std::equal(asked.bone.begin(), asked.bone.end(), motion_.controls.bone.begin(),
+                                      [](const RigidTransform& a, const RigidTransform& b)
+                                      { return a.rotation == b.rotation && a.translation == b.translation; });
+  controller_.assembled().renew(most, bones_move, controller_.state().frequency_squared, search);
 }
 
 // Makes a plan that ends with the controls `next`, and advances the muscles' activations to its end.
@@ -309,7 +316,6 @@ std::vector<Allocation> TimeStepper::allocations() const
   if (skin_values_)
     skin_values_->list_arrays(list);
   discretisation_.list_arrays(list);
-  list.add("mode of the highest frequency", motion_.highest_mode);
   if (ledger_)
     ledger_->list_arrays(list);
   backend_->list_arrays(list);

@@ -62,19 +62,18 @@ private:
     double time = 0;         // [s]
     double latest_step = 0;  // [s]; 0: no step has been made
     bool diverged = false;
-    NodalVectors highest_mode{};  // mode of the highest frequency; empty until it is searched for
 
     void archive(ByteArchive& archive)
     {
       bones.archive(archive);
-      archive(controls.activation)(controls.bone)(activation)(time)(latest_step)(diverged)(highest_mode);
+      archive(controls.activation)(controls.bone)(activation)(time)(latest_step)(diverged);
     }
   };
   struct MotionSnapshot;
 
   Motion at_rest() const;
   void renew_conditions();
-  void renew_assembled_estimate(const std::vector<float>& asked);
+  void renew_assembled_estimate(const Controls& asked);
   StepPlan plan_to(const Controls& next, const TimeStepController::Choice& choice);
   void effects_switched(const std::vector<Effect>& effects);
   /// Resets the choice of the time step and opens the ledger again.

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "cuda/kernels/step_kernel.hpp"
+
+namespace frontalis
+{
+
+/// Number of thread blocks of the kernels that sum over a vector, each of which reports sums over its part.
+constexpr int lanczos_blocks = 128;
+
+/// An iteration of the search for the highest frequency (solver/stepping/highest_frequency_search.hpp). `now` and
+/// `before` are vectors of any length; the iteration stands for those of unit length. Of the sums, `x` is the squared
+/// length and `y` the largest |component| / sqrt(mass).
+struct LanczosIteration
+{
+  std::uint32_t nodes;
+  const float* mobility;  ///< see StepArguments::mobility
+  const float4* u;
+  const float4* present;  ///< forces at u
+  const float4* forces;   ///< forces at `moved`
+  float4 *now, *before, *moved;
+  double amplitude;            ///< largest displacement of a node [m]
+  const double2* size_before;  ///< sums of the vector before; null in the first iteration
+  const double2* size;         ///< sums of `now`
+  double2* size_next;          ///< receives those of the vector that replaces `before`
+  double* along;               ///< receives sums of the products of `now` with its image
+};
+
+/// moved = u + displacements along `now`. Held nodes do not move.
+cudaError_t launch_displace(const LanczosIteration& iteration, cudaStream_t stream);
+
+/// Replaces `before` by the image of `now`, found from the forces, without its parts along both vectors.
+cudaError_t launch_lanczos_product(const LanczosIteration& iteration, cudaStream_t stream);
+
+}  // namespace frontalis
