@@ -31,20 +31,39 @@ inline ContactBody contact_body(const Contact& contact, const physics::DistanceF
   return body;
 }
 
-/// Appends the pose of a body (ContactArguments::poses).
-inline void add_pose(const ContactBody& body, const std::vector<RigidTransform>& bones, std::vector<float>& to)
+/// Appends a pose in the form of BodyPose (cuda/kernels/bone_pose.cuh): three rows, each with a component of the shift.
+inline void add_pose(const RigidTransform& pose, const double (&middle)[3], std::vector<float>& to)
 {
-  const RigidTransform pose = body.bone < 0 ? RigidTransform() : bones[body.bone];
   for (std::size_t i = 0; i < 3; ++i)
   {
-    double shift = -body.middle[i];
+    double shift = -middle[i];
     for (std::size_t j = 0; j < 3; ++j)
     {
       const double turn = pose.rotation[3 * j + i];
       to.push_back(static_cast<float>(turn - (i == j ? 1 : 0)));
-      shift += turn * (body.middle[j] - pose.translation[j]);
+      shift += turn * (middle[j] - pose.translation[j]);
     }
     to.push_back(static_cast<float>(shift));
+  }
+}
+
+/// Appends the pose of a body (ContactArguments::poses).
+inline void add_pose(const ContactBody& body, const std::vector<RigidTransform>& bones, std::vector<float>& to)
+{
+  add_pose(body.bone < 0 ? RigidTransform() : bones[body.bone], body.middle, to);
+}
+
+/// Appends a bone's pose after a step, and its motion in the step (StepArguments::bone_motions). `rate`: 1 over the
+/// length of the step [1/s].
+inline void add_bone_motion(const RigidTransform& before, const RigidTransform& after, double rate,
+                            std::vector<float>& to)
+{
+  add_pose(after, { 0, 0, 0 }, to);
+  for (std::size_t i = 0; i < 3; ++i)
+  {
+    for (std::size_t j = 3 * i; j < 3 * i + 3; ++j)
+      to.push_back(static_cast<float>(rate * (after.rotation[j] - before.rotation[j])));
+    to.push_back(static_cast<float>(rate * (after.translation[i] - before.translation[i])));
   }
 }
 

@@ -1,3 +1,4 @@
+#include "cuda/backend/contact_point.hpp"
 #include "cuda/backend/cuda_solver.hpp"
 
 #include "frontalis/physics/mutation.hpp"
@@ -47,15 +48,18 @@ void CudaSolver::stage(const StepPlan& plan, const std::vector<float>& relaxatio
   std::vector<std::vector<RigidTransform>> poses;
   for (int step = 0; (bones > 0 || !running.empty()) && step <= plan.steps; ++step)
     poses.push_back(step == 0 ? plan.begin.bone : plan.constraint_step(step - 1).bone);
-  std::vector<float> bodies;
+  std::vector<float> motions, bodies;
+  for (std::size_t step = 0; step < poses.size(); ++step)
+    for (std::size_t bone = 0; bone < bones; ++bone)
+      add_bone_motion(poses[step == 0 ? 0 : step - 1][bone], poses[step][bone], 1 / plan.dt, motions);
   for (const DevicePart* const part : running)
     if (bodies.empty())
       bodies = part->motion(poses);
-  // Offset of the motion of bodies [bytes]. It is read as float4, which must be aligned to 16 bytes.
-  constexpr std::size_t bodies_at = 16;
-  const std::size_t activation_at = bodies_at + sizeof(double) * ((bodies.size() + 1) / 2);
-  const std::size_t poses_at = activation_at + sizeof(double) * muscles;
-  const std::size_t relaxation_at = poses_at + (bones > 0 ? sizeof(double) * 12 * poses.size() * bones : 0);
+  // Offset of the motion of bones [bytes]. It and that of bodies are read as float4, which must be aligned to 16 bytes.
+  constexpr std::size_t motions_at = 16;
+  const std::size_t bodies_at = motions_at + sizeof(float) * motions.size();
+  const std::size_t activation_at = bodies_at + sizeof(float) * bodies.size();
+  const std::size_t relaxation_at = activation_at + 2 * sizeof(float) * muscles;
   const std::size_t bytes = relaxation_at + sizeof(float) * relaxation.size();
   if (bytes > slot.staged.size())
   {
@@ -63,23 +67,16 @@ void CudaSolver::stage(const StepPlan& plan, const std::vector<float>& relaxatio
     slot.controls = DeviceArray<char>(bytes);
   }
   char* const staged = slot.staged.data();
-  std::memset(staged, 0, bodies_at);
+  std::memset(staged, 0, motions_at);
   const auto put = [staged](std::size_t at, const auto& values)
   {
     if (!values.empty())
       std::memcpy(staged + at, values.data(), values.size() * sizeof(values[0]));
   };
+  put(motions_at, motions);
   put(bodies_at, bodies);
   put(activation_at, plan.begin.activation);
   put(activation_at + muscles * sizeof(float), plan.end.activation);
-  std::size_t pose_at = poses_at;
-  for (const std::vector<RigidTransform>& of_step : poses)
-    for (const RigidTransform& pose : of_step)
-    {
-      put(pose_at, pose.rotation);
-      put(pose_at + 9 * sizeof(double), pose.translation);
-      pose_at += 12 * sizeof(double);
-    }
   put(relaxation_at, relaxation);
   require(cudaMemcpyAsync(slot.controls.data(), staged, bytes, cudaMemcpyHostToDevice, stream_), "copying controls");
   char* const controls = slot.controls.data();
@@ -91,7 +88,7 @@ void CudaSolver::stage(const StepPlan& plan, const std::vector<float>& relaxatio
   }
   g.activation_begin = reinterpret_cast<const float*>(controls + activation_at);
   g.activation_end = g.activation_begin + muscles;
-  g.poses = reinterpret_cast<const double*>(controls + poses_at);
+  g.bone_motions = reinterpret_cast<const float4*>(controls + motions_at);
   g.relaxation = relaxation.empty() ? nullptr : reinterpret_cast<const float*>(controls + relaxation_at);
 }
 

@@ -28,7 +28,7 @@ DeviceContacts::DeviceContacts(const Model& model, const std::vector<std::uint32
   std::vector<SlidingNodeField> sliding;
   std::vector<float4> at, samples(sample_words * count, float4{ 0, 0, 0, 0 });
   std::vector<float> friction;
-  std::vector<GlidingNode> glides;
+  std::vector<float4> bone;
   float none = 0;
   std::memcpy(&none, &no_cell, sizeof none);
   for (const SlidingNode& node : nodes)
@@ -48,9 +48,9 @@ DeviceContacts::DeviceContacts(const Model& model, const std::vector<std::uint32
     if (surface.friction > 0)
       friction.push_back(static_cast<float>(surface.friction));
     node_.push_back(node.node);
-    gliding_.push_back(surface.bone < 0 ? -1 : static_cast<std::int32_t>(glides.size()));
-    if (surface.bone >= 0)
-      glides.push_back({ { rest[0], rest[1], rest[2] }, surface.bone, static_cast<std::int32_t>(index) });
+    bone.push_back({ static_cast<float>(rest[0]), static_cast<float>(rest[1]), static_cast<float>(rest[2]), 0 });
+    std::memcpy(&bone.back().w, &surface.bone, sizeof surface.bone);
+    glides_.push_back(surface.bone >= 0);
   }
   sliding_ = DeviceArray<SlidingNodeField>(sliding);
   at_ = DeviceArray<float4>(at);
@@ -58,18 +58,15 @@ DeviceContacts::DeviceContacts(const Model& model, const std::vector<std::uint32
   planes_ = DeviceArray<float4>(count);
   friction_ = DeviceArray<float>(friction);
   pressing_ = DeviceArray<float>(friction.size());
-  glides_ = DeviceArray<GlidingNode>(glides);
+  if (std::find(glides_.begin(), glides_.end(), true) != glides_.end())
+    gliding_ = DeviceArray<float4>(bone);
   reset();
 }
 
 void DeviceContacts::add_tasks(std::vector<NodeTask>& task_of) const
 {
   for (std::size_t index = 0; index < node_.size(); ++index)
-  {
-    const bool glides = gliding_[index] >= 0;
-    task_of[node_[index]].of[glides ? node_gliding : node_sliding] =
-        glides ? gliding_[index] : static_cast<std::int32_t>(index);
-  }
+    task_of[node_[index]].of[glides_[index] ? node_gliding : node_sliding] = static_cast<std::int32_t>(index);
 }
 
 void DeviceContacts::describe(StepArguments& g) const
@@ -83,14 +80,14 @@ void DeviceContacts::describe(StepArguments& g) const
   g.friction = friction_.data();
   g.pressing = pressing_.data();
   g.rubbing_count = rubs_ ? static_cast<std::uint32_t>(friction_.size()) : 0;
-  g.gliding = glides_.data();
+  g.gliding = gliding_.data();
 }
 
 void DeviceContacts::list_arrays(ArrayList& list)
 {
   surfaces_.list_arrays(Effect::sliding, list);
   list.add(Effect::sliding, "fields of surfaces", fields_.bytes());
-  list.add(Effect::sliding, "samples at nodes", sliding_.bytes() + at_.bytes() + samples_.bytes() + glides_.bytes());
+  list.add(Effect::sliding, "samples at nodes", sliding_.bytes() + at_.bytes() + samples_.bytes() + gliding_.bytes());
   list_state(list, Effect::sliding, "tangent planes", planes_);
   list.add(Effect::friction, "nodes that rub", friction_.bytes());
   list_state(list, Effect::friction, "nodes that rub", pressing_);

@@ -29,14 +29,13 @@ public:
 
 private:
   bool rubs_ = true;
-  std::vector<std::int32_t> node_;     // model node of each sliding node
-  std::vector<std::int32_t> gliding_;  // index into glides_ of each sliding node; -1: its surface stands still
+  std::vector<std::int32_t> node_;  // model node of each sliding node
+  std::vector<bool> glides_;        // whether its surface moves with a bone
   DeviceFields surfaces_;
   DeviceArray<physics::DistanceField> fields_;
   DeviceArray<SlidingNodeField> sliding_;
-  DeviceArray<float4> at_, samples_, planes_;
+  DeviceArray<float4> at_, samples_, planes_, gliding_;
   DeviceArray<float> friction_, pressing_;
-  DeviceArray<GlidingNode> glides_;
 };
 
 }  // namespace cuda

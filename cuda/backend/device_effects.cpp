@@ -85,7 +85,8 @@ void DeviceModel::run_tasks(EffectSet running)
   effects_ = voxel_part(effects_) | node_part(tasks);
   auto words = whole_.patch_tasks;
   for (std::int32_t& word : words)
-    if (!slides && word >= 0)
+    if (!slides && (word >= 0 || (word < patch_task::none && word != patch_task::still &&
+                                  patch_task::kind_of(word) == patch_task::glides)))
       word = patch_task::none;
   patch_tasks_.upload(words.data(), words.size());
 }
@@ -99,7 +100,7 @@ Effects DeviceModel::node_part(const std::vector<NodeTask>& tasks) const
     if (task.of[node_sliding] >= 0 || task.of[node_gliding] >= 0)
       part = part | Effects::sliding;
     const bool any = std::any_of(std::begin(task.of), std::end(task.of), [](std::int32_t index) { return index >= 0; });
-    if (any && !(launch_.patches && slides_only(task)))
+    if (any && !(launch_.patches && has_only(task, node_sliding)))
       part = part | Effects::tasks;
   }
   return part;

@@ -40,11 +40,8 @@ std::vector<std::uint32_t> added_voxels(const Model& model, const Discretisation
   std::vector<std::uint32_t> voxels;
   for (std::uint32_t e = 0; cut.stress_apart && e < model.voxels.size(); ++e)
   {
-    bool any = !model.fibre_muscle.empty() && model.fibre_begin[e] < model.fibre_begin[e + std::size_t{ 1 }];
-    for (auto m = model.mixture_begin[e]; m < model.mixture_begin[e + std::size_t{ 1 }]; ++m)
-      any = any || (!discretisation.selective_reduced && model.mixture_proportion[m] > 0 &&
-                    model.materials[model.mixture_material[m]].law != Law::neo_hookean);
-    if (any)
+    const bool fibres = !model.fibre_muscle.empty() && model.fibre_begin[e] < model.fibre_begin[e + std::size_t{ 1 }];
+    if (fibres || (!discretisation.selective_reduced && has_law(model, e)))
       voxels.push_back(e);
   }
   return voxels;
@@ -325,7 +322,7 @@ std::vector<NodeTask> DeviceModel::add_tasks(const Model& model)
         prescribed[index].ramp[axis] = load.ramp;
       }
   }
-  std::vector<RigidMotion> rigid;
+  std::vector<float4> rigid;
   std::vector<char> still(model.nodes.size(), 0);
   for (const auto& node : model.rigid)
   {
@@ -333,11 +330,9 @@ std::vector<NodeTask> DeviceModel::add_tasks(const Model& model)
     task_of[node.node].of[node_rigid] = node.bone < 0 ? -1 : static_cast<std::int32_t>(rigid.size());
     if (node.bone < 0)
       continue;
-    RigidMotion motion{};
     const auto rest = rest_position(model, node.node);
-    std::copy(rest.begin(), rest.end(), motion.rest);
-    motion.bone = node.bone;
-    rigid.push_back(motion);
+    rigid.push_back({ static_cast<float>(rest[0]), static_cast<float>(rest[1]), static_cast<float>(rest[2]), 0 });
+    std::memcpy(&rigid.back().w, &node.bone, sizeof node.bone);
   }
 
   std::vector<NodeTask> tasks;
@@ -359,7 +354,7 @@ std::vector<NodeTask> DeviceModel::add_tasks(const Model& model)
   };
   std::sort(tasks.begin(), tasks.end(), [&](const NodeTask& a, const NodeTask& b) { return key(a) < key(b); });
   prescribed_ = DeviceArray<PrescribedMotion>(prescribed);
-  rigid_ = DeviceArray<RigidMotion>(rigid);
+  rigid_ = DeviceArray<float4>(rigid);
   return tasks;
 }
 

@@ -139,7 +139,7 @@ private:
   DeviceArray<float4> fibres_;
   DeviceArray<NodeTask> tasks_;
   DeviceArray<PrescribedMotion> prescribed_;
-  DeviceArray<RigidMotion> rigid_;
+  DeviceArray<float4> rigid_;
   DeviceLoads loads_;
   DeviceViscosity viscosity_;
   DeviceContacts contacts_;

@@ -102,7 +102,14 @@ void DeviceModel::add_patches(const Model& model, const VoxelPatches& patches, c
   for (std::size_t t = 0; t < tasks.size(); ++t)
   {
     const NodeTask& task = tasks[t];
-    task_of[task.node] = slides_only(task) ? task.of[node_sliding] : patch_task::other - static_cast<std::int32_t>(t);
+    if (has_only(task, node_sliding))
+      task_of[task.node] = task.of[node_sliding];
+    else if (has_only(task, node_gliding))
+      task_of[task.node] = patch_task::coded(patch_task::glides, task.of[node_gliding]);
+    else if (has_only(task, node_rigid))
+      task_of[task.node] = patch_task::coded(patch_task::moves_with_bone, task.of[node_rigid]);
+    else
+      task_of[task.node] = patch_task::coded(patch_task::other, static_cast<std::int32_t>(t));
   }
   const auto words = [](const std::vector<std::array<std::uint16_t, 8>>& from)
   {

@@ -12,31 +12,13 @@ namespace cuda
 // Points of the tissue that may touch bodies. They follow the same rules as the points of BodyContact, in single
 // precision. Positions are relative to rest, so that they are exact to nanometres.
 
-/// Pose of a body at the start of a step. Its inverse rotation is the identity + `less`. In the body's frame, a point
-/// at middle + arm + moved has moved from its rest position by moved + shift + less * (arm + moved).
-struct BodyPose
-{
-  physics::Vec3<float> less[3];  ///< rows
-  physics::Vec3<float> shift;
-
-  __device__ __forceinline__ physics::Vec3<float> gone(const physics::Vec3<float>& arm,
-                                                       const physics::Vec3<float>& moved) const
-  {
-    const physics::Vec3<float> at = arm + moved;
-    return moved + shift + physics::Vec3<float>{ dot(less[0], at), dot(less[1], at), dot(less[2], at) };
-  }
-  /// Turns a vector from the body's frame to the scene's.
-  __device__ __forceinline__ physics::Vec3<float> turned(const physics::Vec3<float>& v) const
-  {
-    return v + v.x * less[0] + v.y * less[1] + v.z * less[2];
-  }
-};
-
+/// Pose of a body at the start of a step.
 __device__ __forceinline__ BodyPose body_pose_at(const StepArguments& g, int step, std::int32_t body)
 {
-  const float4* const from = g.contact.poses + 3 * (static_cast<std::size_t>(step) * g.contact.body_count + body);
-  const float4 x = from[0], y = from[1], z = from[2];
-  return { { { x.x, x.y, x.z }, { y.x, y.y, y.z }, { z.x, z.y, z.z } }, { x.w, y.w, z.w } };
+  BodyPose pose;
+  read_rows(g.contact.poses + 3 * (static_cast<std::size_t>(step) * g.contact.body_count + body), pose.less,
+            pose.shift);
+  return pose;
 }
 
 /// Copies the samples of another cell to a point's own copy. Returns false, and copies nothing, if the cell has no
@@ -76,9 +58,10 @@ __device__ __forceinline__ physics::Vec3<double> from_bone(const StepArguments& 
   double origin[3] = { 0, 0, 0 };
   if (body.bone >= 0)
   {
-    const Pose pose = pose_at(g, step, body.bone);
-    for (int axis = 0; axis < 3; ++axis)
-      origin[axis] = pose.t[axis];
+    const physics::Vec3<float> t = bone_motion_at(g, step, body.bone).displacement_of({ 0, 0, 0 });
+    origin[0] = t.x;
+    origin[1] = t.y;
+    origin[2] = t.z;
   }
   return { body.middle[0] + double(point.arm[0]) + double(moved.x) - origin[0],
            body.middle[1] + double(point.arm[1]) + double(moved.y) - origin[1],

@@ -22,7 +22,7 @@ __global__ void __launch_bounds__(block, 4) run_tasks(const __grid_constant__ St
   // All loads are issued at once, because memory latency dominates here.
   const NodeTask task = g.tasks[t];
   const std::int32_t sliding = task.of[node_sliding];
-  const bool slides = has<effects, Effects::sliding> && slides_only(task);
+  const bool slides = has<effects, Effects::sliding> && has_only(task, node_sliding);
   SlidingFetch fetch;
   if (slides)
     fetch_sliding<effects>(g, sliding, fetch);
@@ -32,8 +32,10 @@ __global__ void __launch_bounds__(block, 4) run_tasks(const __grid_constant__ St
   const float4 old = make_float4(before.x, before.y, before.z, now.w);
   if (slides)
     slide<effects>(g, sliding, { old, task.node, g.step_begin }, fetch, n);
-  else if (has<effects, Effects::sliding> && glides_only(task))
+  else if (has<effects, Effects::sliding> && has_only(task, node_gliding))
     glide_here<effects>(g, task.of[node_gliding], { old, task.node, g.step_begin }, n);
+  else if (has_only(task, node_rigid))
+    move_with_bone(g, task.of[node_rigid], { old, task.node, g.step_begin }, n);
   else
     apply_task<effects>(g, task, old, g.step_begin, n);
   next[task.node] = make_float4(n.u[0], n.u[1], n.u[2], now.w);

@@ -48,17 +48,21 @@ static __device__ __noinline__ void follow_path(const StepArguments& g, std::int
                        g.dt, n.u[i], n.v[i]);
 }
 
+__device__ __forceinline__ void move_with_bone(const StepArguments& g, std::int32_t index, const NodeStep& at,
+                                               NodeState& n)
+{
+  const float4 rest = g.rigid[index];
+  const physics::Vec3<float> to = bone_motion_at(g, at.step + 1, static_cast<std::int32_t>(__float_as_uint(rest.w)))
+                                      .displacement_of({ rest.x, rest.y, rest.z });
+  physics::move_to(to.x, at.before.x, g.dt, n.u[0], n.v[0]);
+  physics::move_to(to.y, at.before.y, g.dt, n.u[1], n.v[1]);
+  physics::move_to(to.z, at.before.z, g.dt, n.u[2], n.v[2]);
+}
+
 static __device__ __noinline__ void follow_bone(const StepArguments& g, std::int32_t index, const NodeStep& at,
                                                 NodeState& n)
 {
-  using Point = physics::Vec3<double>;
-  const RigidMotion& motion = g.rigid[index];
-  const Point rest{ motion.rest[0], motion.rest[1], motion.rest[2] };
-  const Point moved = pose_at(g, at.step + 1, motion.bone).outwards(rest) - rest;
-  const double to[3] = { moved.x, moved.y, moved.z };
-  const float old[3] = { at.before.x, at.before.y, at.before.z };
-  for (int i = 0; i < 3; ++i)
-    physics::move_to(to[i], old[i], g.dt, n.u[i], n.v[i]);
+  move_with_bone(g, index, at, n);
 }
 
 /// One function per NodeEffect. They are called through a table instead of being inlined, so that the code of all
@@ -83,6 +87,18 @@ static __device__ __noinline__ void apply_task(const StepArguments& g, const Nod
   for (int effect = 0; effect < node_effects; ++effect)
     if (task.of[effect] >= 0)
       node_functions<With>[effect](g, task.of[effect], at, n);
+}
+
+/// Applies the effects of a node in a patch whose entry of patch_tasks is below patch_task::none.
+template <Effects With>
+static __device__ __noinline__ void apply_patch_task(const StepArguments& g, std::int32_t task, const NodeStep& at,
+                                                     NodeState& n)
+{
+  const std::int32_t index = patch_task::index_of(task);
+  const patch_task::Kind kind = patch_task::kind_of(task);
+  if (kind == patch_task::other)
+    return apply_task<With>(g, g.tasks[index], at.before, at.step, n);
+  node_functions<With>[kind == patch_task::glides ? node_gliding : node_rigid](g, index, at, n);
 }
 
 /// Data for the update of a node, loaded before the stress is computed.

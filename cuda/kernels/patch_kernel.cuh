@@ -160,11 +160,20 @@ __device__ __forceinline__ void step_patch_node(const StepArguments& g, const Pa
     n = updated(g, node, fetch, force);
     if (has<With, Effects::sliding> && task >= 0)
       slide<With>(g, task, { fetch.own, node, step }, fetched, n);
+    else if (has<With, Effects::contact> && task < patch_task::none && patch_task::kind_of(task) != patch_task::other)
+    {
+      // Models with contact have many such nodes, and a call through the table would take longer than their step.
+      const NodeStep at{ fetch.own, node, step };
+      if (patch_task::kind_of(task) == patch_task::glides)
+        glide_here<part<With, of_nodes>>(g, patch_task::index_of(task), at, n);
+      else
+        move_with_bone(g, patch_task::index_of(task), at, n);
+    }
     else if (has<With, Effects::tasks> && task != patch_task::none)
     {
       // The copy lets the state of nodes without tasks stay in registers.
       NodeState held = n;
-      apply_task<part<With, of_nodes>>(g, g.tasks[patch_task::other - task], fetch.own, step, held);
+      apply_patch_task<part<With, of_nodes>>(g, task, { fetch.own, node, step }, held);
       n = held;
     }
 #pragma unroll
@@ -190,7 +199,7 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
 {
   constexpr Effects With = static_cast<Effects>(Set);
   __shared__ float2 activations[has<With, Effects::fibres> ? most_muscles : 1];
-  constexpr Effects plain = plain_part<With>;
+  constexpr Effects plain = plain_part<With>, lawless = lawless_part<With>;
   const PatchMemory memory = patch_memory<With>(launch);
   const std::uint32_t threads = blockDim.x;
   if (has<With, Effects::fibres>)
@@ -243,8 +252,11 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
       if (has<With, Effects::shell>)
         shell = fetch_shell(g, launch, memory, p, kept);
       VoxelFetch voxel{};
-      // Voxels with fibres or viscosity come first, so that warps without such voxels skip the code for both.
-      const auto is_plain = [&](std::uint32_t v) { return With == plain || (v & ~31u) >= patch.special; };
+      // Voxels with laws, fibres or viscosity come first, so that warps without such voxels skip the code for them.
+      const bool general = g.stabilisation != nullptr || g.selective_reduced;
+      const auto is_plain = [&](std::uint32_t v) { return With == plain || (!general && (v & ~31u) >= patch.special); };
+      const auto is_lawless = [&](std::uint32_t v)
+      { return With == lawless || (!general && (v & ~31u) >= patch.laws); };
       const auto fetch = [&](std::uint32_t v) {
         return is_plain(v) ? fetch_voxel<plain>(g, patch.voxel_begin + v) : fetch_voxel<With>(g, patch.voxel_begin + v);
       };
@@ -266,6 +278,8 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
           voxel = fetch(v);
         if (is_plain(v))
           put_forces<plain>(g, voxel, activation, 0, with_bound, memory, v);
+        else if (is_lawless(v))
+          put_forces<lawless>(g, voxel, activation, relaxes, with_bound, memory, v);
         else
           put_forces<With>(g, voxel, activation, relaxes, with_bound, memory, v);
       }

@@ -100,37 +100,37 @@ __device__ __forceinline__ physics::LevelPlane<float> plane_at(const StepArgumen
   return plane;
 }
 
-/// Slides a node on a plane. The plane, and the node's position p and velocity v, are in the surface's frame. Returns
-/// whether the node has friction. T: number type of the step.
-template <Effects With, class T>
+/// Slides a node on a plane. The plane, the node's position p and its velocity v are those relative to the surface.
+/// Returns whether the node has friction.
+template <Effects With>
 __device__ __forceinline__ bool slide_on(const StepArguments& g, std::int32_t index, const SlidingFetch& fetch,
-                                         const physics::LevelPlane<float>& plane, physics::Vec3<T>& p,
-                                         physics::Vec3<T>& v)
+                                         const physics::LevelPlane<float>& plane, physics::Vec3<float>& p,
+                                         physics::Vec3<float>& v)
 {
-  const auto of = [](const physics::Vec3<float>& a) { return physics::Vec3<T>{ a.x, a.y, a.z }; };
-  const physics::Vec3<T> normal = of(plane.normal);
-  T taken = physics::turn_with_plane(of(normal_of(fetch.plane)), normal, v);
-  physics::Vec3<T> push{ 0, 0, 0 };
-  taken = taken + physics::slide(normal, -T(plane.distance), push, v);
+  float taken = physics::turn_with_plane(normal_of(fetch.plane), plane.normal, v);
+  physics::Vec3<float> push{ 0, 0, 0 };
+  taken = taken + physics::slide(plane.normal, -plane.distance, push, v);
   p = p + push;
   if (!has<With, Effects::friction> || !rubs(g, index))
     return false;
-  T pressing = fetch.pressing;
-  physics::rub(T(fetch.friction), T(g.friction_response), T(g.dt_exact), taken * T(g.rate), pressing, p, v);
-  g.pressing[index] = static_cast<float>(pressing);
+  float pressing = fetch.pressing;
+  physics::rub(fetch.friction, static_cast<float>(g.friction_response), g.dt, taken * static_cast<float>(g.rate),
+               pressing, p, v);
+  g.pressing[index] = pressing;
   return true;
 }
 
 /// Adds the energy dissipated by friction at a node [J]; see physics::friction_work().
 static __device__ __forceinline__ void account_friction(const StepArguments& g, std::int32_t index, const NodeStep& at,
-                                                        const physics::Vec3<double>& normal,
-                                                        const physics::Vec3<double>& surface_velocity,
-                                                        const physics::Vec3<double>& free,
-                                                        const physics::Vec3<double>& v)
+                                                        const physics::Vec3<float>& normal,
+                                                        const physics::Vec3<float>& surface_velocity,
+                                                        const physics::Vec3<float>& free, const physics::Vec3<float>& v)
 {
+  const auto exact = [](const physics::Vec3<float>& a) { return physics::Vec3<double>{ a.x, a.y, a.z }; };
   const physics::Vec3<double> old{ g.velocity_before[0][at.node], g.velocity_before[1][at.node],
                                    g.velocity_before[2][at.node] };
-  g.friction_work[index] += physics::friction_work(normal, surface_velocity, old, free, v) / double(at.before.w);
+  g.friction_work[index] +=
+      physics::friction_work(exact(normal), exact(surface_velocity), old, exact(free), exact(v)) / double(at.before.w);
 }
 
 /// Step of a node that slides on a surface that stands still.
@@ -139,13 +139,36 @@ __device__ __forceinline__ void slide(const StepArguments& g, std::int32_t index
                                       const SlidingFetch& fetch, NodeState& n)
 {
   physics::Vec3<float> u{ n.u[0], n.u[1], n.u[2] }, v{ n.v[0], n.v[1], n.v[2] };
+  const physics::Vec3<float> before = v;
   const physics::LevelPlane<float> plane = plane_at(g, index, fetch, u);
   if (slide_on<With>(g, index, fetch, plane, u, v) && g.friction_work != nullptr)
-    account_friction(g, index, at, { plane.normal.x, plane.normal.y, plane.normal.z }, { 0, 0, 0 },
-                     { n.v[0], n.v[1], n.v[2] }, { v.x, v.y, v.z });
+    account_friction(g, index, at, plane.normal, { 0, 0, 0 }, before, v);
   n = { { u.x, u.y, u.z }, { v.x, v.y, v.z } };
 }
 
+/// Step of a node on a surface that moves with a bone. It is done in the bone's frame, and its changes of displacement
+/// and velocity are turned back to the scene's.
+template <Effects With>
+__device__ __forceinline__ void glide_here(const StepArguments& g, std::int32_t index, const NodeStep& at, NodeState& n)
+{
+  using Place = physics::Vec3<float>;
+  const float4 on = g.gliding[index];
+  SlidingFetch fetch;
+  fetch_sliding<With>(g, index, fetch);
+  const Place u{ n.u[0], n.u[1], n.u[2] }, v{ n.v[0], n.v[1], n.v[2] }, rest{ on.x, on.y, on.z };
+  const BoneMotion bone = bone_motion_at(g, at.step + 1, static_cast<std::int32_t>(__float_as_uint(on.w)));
+  const Place gone = bone.gone(rest, u), of_surface = bone.velocity_at(rest + gone),
+              before = bone.turned_back(v - of_surface);
+  const physics::LevelPlane<float> plane = plane_at(g, index, fetch, gone);
+  Place push{ 0, 0, 0 }, relative = before;
+  const bool rubbed = slide_on<With>(g, index, fetch, plane, push, relative);
+  const Place moved = u + bone.turned(push), changed = v + bone.turned(relative - before);
+  if (rubbed && g.friction_work != nullptr)
+    account_friction(g, index, at, bone.turned(plane.normal), of_surface, v, changed);
+  n = { { moved.x, moved.y, moved.z }, { changed.x, changed.y, changed.z } };
+}
+
+/// slide() and glide_here() as functions that are not inlined, for the table in node_tasks.cuh.
 template <Effects With>
 static __device__ __noinline__ void keep_distance(const StepArguments& g, std::int32_t index, const NodeStep& at,
                                                   NodeState& n)
@@ -154,33 +177,6 @@ static __device__ __noinline__ void keep_distance(const StepArguments& g, std::i
   fetch_sliding<With>(g, index, fetch);
   slide<With>(g, index, at, fetch, n);
 }
-
-/// Step of a node that slides on a surface that moves with a bone. All but the plane is computed in double precision;
-/// in single precision, the conversions between the frames would move a node at rest.
-template <Effects With>
-__device__ __forceinline__ void glide_here(const StepArguments& g, std::int32_t index, const NodeStep& at, NodeState& n)
-{
-  using Point = physics::Vec3<double>;
-  const GlidingNode node = g.gliding[index];
-  SlidingFetch fetch;
-  fetch_sliding<With>(g, node.sliding, fetch);
-  const Pose now = pose_at(g, at.step + 1, node.bone), before = pose_at(g, at.step, node.bone);
-  const Point rest{ node.rest[0], node.rest[1], node.rest[2] }, free{ n.v[0], n.v[1], n.v[2] };
-  physics::RelativeMotion motion =
-      physics::relative_to(now, before, g.rate, rest + Point{ n.u[0], n.u[1], n.u[2] }, free);
-  const Point gone = motion.place - rest;
-  const physics::LevelPlane<float> plane = plane_at(
-      g, node.sliding, fetch, { static_cast<float>(gone.x), static_cast<float>(gone.y), static_cast<float>(gone.z) });
-  const bool rubbed = slide_on<With>(g, node.sliding, fetch, plane, motion.place, motion.velocity);
-  const Point u = now.outwards(motion.place) - rest, v = now.turned(motion.velocity) + motion.surface_velocity;
-  if (rubbed && g.friction_work != nullptr)
-    account_friction(g, node.sliding, at, now.turned({ plane.normal.x, plane.normal.y, plane.normal.z }),
-                     motion.surface_velocity, free, v);
-  n = { { static_cast<float>(u.x), static_cast<float>(u.y), static_cast<float>(u.z) },
-        { static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z) } };
-}
-
-/// glide_here() as a function that is not inlined, for the table in node_tasks.cuh.
 template <Effects With>
 static __device__ __noinline__ void glide(const StepArguments& g, std::int32_t index, const NodeStep& at, NodeState& n)
 {

@@ -20,7 +20,7 @@ enum NodeEffect : std::uint8_t
 {
   node_load,        ///< index into StepArguments::load_begin
   node_sliding,     ///< on a surface that stands still; index into StepArguments::sliding
-  node_gliding,     ///< on a surface that moves with a bone; index into StepArguments::gliding
+  node_gliding,     ///< on a surface that moves with a bone; index into StepArguments::sliding
   node_prescribed,  ///< index into StepArguments::prescribed
   node_rigid,       ///< index into StepArguments::rigid
   node_effects      ///< number of effects
@@ -33,19 +33,13 @@ struct NodeTask
   std::int32_t of[node_effects];  ///< index of each NodeEffect; negative if the node does not have it
 };
 
-/// Whether the node slides on a still surface and has no other effect.
-__host__ __device__ inline bool slides_only(const NodeTask& task)
+/// Whether the node has this effect and no other.
+__host__ __device__ inline bool has_only(const NodeTask& task, NodeEffect effect)
 {
-  static_assert(node_effects == 5, "each of them is tested below");
-  return task.of[node_sliding] >= 0 &&
-         (task.of[node_load] & task.of[node_gliding] & task.of[node_prescribed] & task.of[node_rigid]) < 0;
-}
-
-/// Whether the node slides on a surface that moves with a bone and has no other effect.
-__host__ __device__ inline bool glides_only(const NodeTask& task)
-{
-  return task.of[node_gliding] >= 0 &&
-         (task.of[node_load] & task.of[node_sliding] & task.of[node_prescribed] & task.of[node_rigid]) < 0;
+  for (int other = 0; other < node_effects; ++other)
+    if ((task.of[other] >= 0) != (other == effect))
+      return false;
+  return true;
 }
 
 /// The part of a surface vertex's force that acts on a node.
@@ -61,12 +55,6 @@ struct PrescribedMotion
   double value[3];  ///< [m]
   double ramp[3];   ///< [s]
   bool fixed[3];
-};
-
-struct RigidMotion
-{
-  double rest[3];  ///< [m]
-  std::int32_t bone;
 };
 
 /// Data that a sliding node needs when it enters another cell of its field.
@@ -87,14 +75,6 @@ constexpr int sample_words = 7;
 /// position. A node outside of that range is past its field's rim. no_cell: no samples are stored yet.
 constexpr std::int32_t middle_cell = 512;
 constexpr std::uint32_t no_cell = 0xffffffffu;
-
-/// A node on a surface that moves with a bone. The node's field and plane are in the frame of the bone.
-struct GlidingNode
-{
-  double rest[3];  ///< [m]
-  std::int32_t bone;
-  std::int32_t sliding;  ///< index into StepArguments::sliding
-};
 
 /// A law other than neo-Hookean that a voxel's tissue contains.
 struct LawEntry
@@ -194,11 +174,13 @@ struct StepArguments : physics::Kick<float>
   const float* friction;  ///< Coulomb's coefficient of the first `rubbing_count` nodes
   float* pressing;        ///< reaction per mass of these nodes, with the delay of friction [m/s2]
   std::uint32_t rubbing_count;
-  const GlidingNode* gliding;
+  /// of nodes on surfaces that move: rest position [m], bits of the bone; null if there are none
+  const float4* gliding;
   const PrescribedMotion* prescribed;
-  const RigidMotion* rigid;
-  /// [step][bone][12]: rotation by rows and translation, before the first step and then after each step
-  const double* poses;
+  const float4* rigid;  ///< of nodes that move with a bone: rest position [m], bits of the bone
+  /// [step][bone][6], before the first step and then after each step: rows of BoneMotion::less, each with a component
+  /// of `shift`, then rows of `spin`, each with one of `drift`
+  const float4* bone_motions;
   std::int32_t bones;
 
   float scale[3];             ///< 1 / (4 h)
@@ -236,13 +218,24 @@ constexpr int most_turns = 8;
 constexpr int most_muscles = 512;
 
 /// Entries of patch_tasks. An entry of at least 0 is an index into StepArguments::sliding: the node slides on a surface
-/// that stands still and has no other effect. `none`: the node has no effect. `still`: the node never moves. `other` -
-/// i: the effects of the node are those of the NodeTask with the index i.
+/// that stands still and has no other effect. `none`: the node has no effect. `still`: the node never moves. Other
+/// entries are coded(kind, index): the node only moves with a bone (index into StepArguments::rigid), it only slides on
+/// a surface that moves (index into StepArguments::sliding), or its effects are those of a NodeTask (index of that).
 namespace patch_task
 {
 constexpr std::int32_t none = -1;
-constexpr std::int32_t other = -2;
 constexpr std::int32_t still = -0x7fffffff;
+enum Kind : std::int32_t
+{
+  moves_with_bone,
+  glides,
+  other,
+  kinds  ///< number of kinds
+};
+
+__host__ __device__ inline std::int32_t coded(Kind kind, std::int32_t index) { return none - 1 - kinds * index - kind; }
+__host__ __device__ inline Kind kind_of(std::int32_t task) { return static_cast<Kind>((none - 1 - task) % kinds); }
+__host__ __device__ inline std::int32_t index_of(std::int32_t task) { return (none - 1 - task) / kinds; }
 }  // namespace patch_task
 
 /// Effects that a kernel computes. There is one kernel per set of effects, so that an effect that a model lacks takes
@@ -269,9 +262,11 @@ inline constexpr bool has = (Set & Part) == Part;
 template <Effects Set, Effects Of>
 inline constexpr Effects part = Set& Of;
 inline constexpr Effects of_nodes = Effects::sliding | Effects::tasks | Effects::friction;
-/// The effects of nodes in a set, and the effects of voxels in it that a voxel without fibres and viscosity may have.
+/// A set without the effects that few voxels have: laws other than neo-Hookean; these, fibres and viscosity.
 template <Effects Set>
-inline constexpr Effects plain_part = Set&(Effects::general_element | of_nodes | Effects::contact | Effects::shell);
+inline constexpr Effects lawless_part = static_cast<Effects>(int(Set) & ~int(Effects::general_element));
+template <Effects Set>
+inline constexpr Effects plain_part = Set&(of_nodes | Effects::contact | Effects::shell);
 constexpr Effects voxel_part(Effects set)
 {
   return set & (Effects::fibres | Effects::viscosity | Effects::general_element);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <numeric>
 #include <string>
+#include <tuple>
 
 namespace frontalis
 {
@@ -170,14 +171,14 @@ std::vector<std::uint32_t> partition(const Model& model, const BoundWork& bound,
   return best;
 }
 
-// Class of each node: 1 if it is prescribed, moves with a bone or slides on a surface that moves; 2 if it only slides
-// on a surface that stands still; else 0. The nodes of a class have contiguous numbers, because a warp takes as long
+// Class of each node: 1 if it is prescribed or moves with a bone, 2 if it slides on a surface that moves, 3 if it
+// slides on one that stands still, else 0. The nodes of a class have contiguous numbers, because a warp takes as long
 // for one node with effects as for 32.
 std::vector<char> busy_nodes(const Model& model)
 {
   std::vector<char> busy(model.nodes.size(), 0);
   for (const SlidingNode& node : model.sliding)
-    busy[node.node] = model.constraint_surfaces[node.surface].bone >= 0 ? 1 : 2;
+    busy[node.node] = model.constraint_surfaces[node.surface].bone >= 0 ? 2 : 3;
   for (const auto& node : model.prescribed)
     busy[node.node] = 1;
   for (const auto& node : model.rigid)
@@ -218,7 +219,7 @@ VoxelPatches::VoxelPatches(const Model& model, const PatchSettings& settings, co
   }
   const auto busy = busy_nodes(model);
   for (const char border : { 1, 0 })
-    for (const char kind : { 2, 1, 0 })
+    for (const char kind : { 3, 2, 1, 0 })
       for (std::size_t n = 0; n < model.nodes.size(); ++n)
         if (on_border[n] == border && busy[n] == kind)
           nodes_of[part_of[n]].push_back(static_cast<std::uint32_t>(n));
@@ -242,12 +243,15 @@ VoxelPatches::VoxelPatches(const Model& model, const PatchSettings& settings, co
     patches[p].halo = static_cast<std::uint32_t>(nodes.size());
     halo.insert(halo.end(), nodes.begin(), nodes.end());
     most_halo = std::max(most_halo, patches[p].halo);
-    const auto rank = [&](std::uint32_t e) { return std::make_pair(is_viscous(model, e), fibres_of(model, e)); };
+    const auto rank = [&](std::uint32_t e)
+    { return std::make_tuple(has_law(model, e), is_viscous(model, e), fibres_of(model, e)); };
     std::stable_sort(voxels_of[p].begin(), voxels_of[p].end(),
                      [&](std::uint32_t a, std::uint32_t b) { return rank(a) > rank(b); });
-    patches[p].special = static_cast<std::uint32_t>(
-        std::count_if(voxels_of[p].begin(), voxels_of[p].end(),
-                      [&](std::uint32_t e) { return rank(e) > std::make_pair(false, std::int32_t{ 0 }); }));
+    const auto count = [&](const auto& is)
+    { return static_cast<std::uint32_t>(std::count_if(voxels_of[p].begin(), voxels_of[p].end(), is)); };
+    patches[p].laws = count([&](std::uint32_t e) { return has_law(model, e); });
+    patches[p].special =
+        count([&](std::uint32_t e) { return rank(e) > std::make_tuple(false, false, std::int32_t{ 0 }); });
   }
 
   std::array<std::uint16_t, 8> none{};
@@ -274,7 +278,7 @@ void VoxelPatches::number_nodes(std::size_t count, const std::vector<std::vector
   std::uint32_t next = 1;
   for (const auto& nodes : nodes_of)
   {
-    patches.push_back({ next, static_cast<std::uint32_t>(nodes.size()), 0, 0, 0, 0, 0, 0 });
+    patches.push_back({ next, static_cast<std::uint32_t>(nodes.size()), 0, 0, 0, 0, 0, 0, 0 });
     for (const auto n : nodes)
       device_node[n] = next++;
   }

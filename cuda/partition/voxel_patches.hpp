@@ -35,7 +35,8 @@ struct Patch
   std::uint32_t border;       ///< number of own nodes that lie in halos of other patches; they come first
   std::uint32_t voxel_begin;  ///< index of the first voxel in VoxelPatches::voxel
   std::uint32_t voxels;
-  std::uint32_t special;     ///< number of voxels that have fibres or viscosity; they come first
+  std::uint32_t laws;        ///< number of voxels with laws other than neo-Hookean; they come first
+  std::uint32_t special;     ///< number of voxels that have such laws, fibres or viscosity; they come first
   std::uint32_t halo_begin;  ///< index of the first halo node in VoxelPatches::halo
   std::uint32_t halo;
 };
@@ -51,7 +52,8 @@ struct VoxelPatches
   std::uint32_t place_of(std::size_t patch, std::uint32_t node) const;
 
   std::vector<Patch> patches;
-  /// model voxels; in each patch viscous ones come first, then the others by number of fibres
+  /// model voxels; in each patch those with laws other than neo-Hookean come first, then viscous ones, then the others
+  /// by number of fibres
   std::vector<std::uint32_t> voxel;
   std::vector<std::array<std::uint16_t, 8>> corner;  ///< indices of its corners in shared memory
   std::vector<std::uint32_t> halo;                   ///< device nodes

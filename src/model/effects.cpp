@@ -291,6 +291,15 @@ bool is_viscous(const Model& model, std::size_t voxel)
   return viscous;
 }
 
+bool has_law(const Model& model, std::size_t voxel)
+{
+  bool any = false;
+  for (auto m = model.mixture_begin[voxel]; m < model.mixture_begin[voxel + 1]; ++m)
+    any =
+        any || (model.mixture_proportion[m] > 0 && model.materials[model.mixture_material[m]].law != Law::neo_hookean);
+  return any;
+}
+
 EffectPresence presence_of(const Model& model, Effect effect)
 {
   if (is_off(model, effect))

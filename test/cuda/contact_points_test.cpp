@@ -61,13 +61,12 @@ public:
   void step(int number)
   {
     const ConstraintStep now{ (number + 1) * dt, dt, number * dt, bones(number + 1), bones(number) };
-    std::vector<double> poses;
+    std::vector<float> motions;
     for (const RigidTransform& pose : now.bone_before)
-    {
-      poses.insert(poses.end(), pose.rotation.begin(), pose.rotation.end());
-      poses.insert(poses.end(), pose.translation.begin(), pose.translation.end());
-    }
-    g_.poses = poses.data();
+      add_bone_motion(pose, pose, 1 / dt, motions);
+    std::vector<float4> bones_before(motions.size() / 4);
+    std::memcpy(bones_before.data(), motions.data(), motions.size() * sizeof(float));
+    g_.bone_motions = bones_before.data();
     std::vector<float> of_bodies;
     for (const ContactBody& body : bodies_)
       add_pose(body, now.bone_before, of_bodies);

@@ -3,6 +3,7 @@
 
 #if __has_include(<cuda_runtime.h>) && defined(__x86_64__)
 
+#include "cuda/backend/contact_point.hpp"
 #include "cuda/kernels/step_kernel.hpp"
 #include "frontalis/model/sample_field.hpp"
 
@@ -47,7 +48,7 @@ public:
     else
       samples_[sample_words - 1].w = static_cast<float>(1 / field.spacing);
     forget_samples();
-    gliding_ = { { rest[0], rest[1], rest[2] }, 0, 0 };
+    bone_ = { static_cast<float>(rest[0]), static_cast<float>(rest[1]), static_cast<float>(rest[2]), 0 };
     turn(0);
     g_.fields = &field_;
     g_.sliding = &node_;
@@ -58,7 +59,7 @@ public:
     g_.friction = &friction_;
     g_.pressing = &pressing_;
     g_.rubbing_count = friction > 0 ? 1 : 0;
-    g_.gliding = &gliding_;
+    g_.gliding = &bone_;
     g_.bones = 1;
     g_.dt_exact = dt;
     g_.dt = static_cast<float>(dt);
@@ -71,14 +72,13 @@ public:
   // Lets the bone turn about the z axis [rad/s].
   void turn(double rate)
   {
-    poses_.clear();
+    rate_ = rate;
+    std::vector<float> motions;
     for (int step = 0; step <= steps; ++step)
-    {
-      const double c = std::cos(rate * step * dt), s = std::sin(rate * step * dt);
-      for (const double x : { c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0 })
-        poses_.push_back(x);
-    }
-    g_.poses = poses_.data();
+      add_bone_motion(pose(std::max(step - 1, 0)), pose(step), 1 / dt, motions);
+    motions_.resize(motions.size() / 4);
+    std::memcpy(motions_.data(), motions.data(), motions.size() * sizeof(float));
+    g_.bone_motions = motions_.data();
   }
   void forget_samples() { at_.w = __uint_as_float(no_cell); }
   void step(int number)
@@ -96,8 +96,11 @@ public:
   // Distance of the node after `number` steps from the sphere on which it started [m].
   double off_level(int number) const
   {
-    const physics::Vec3<double> p =
-        pose_at(g_, number, 0).inwards({ rest[0] + state.u[0], rest[1] + state.u[1], rest[2] + state.u[2] });
+    const Place at{ { rest[0] + state.u[0], rest[1] + state.u[1], rest[2] + state.u[2] } };
+    const auto& r = pose(number).rotation;
+    const auto inwards = [&](std::size_t column)
+    { return r[column] * at[0] + r[column + 3] * at[1] + r[column + 6] * at[2]; };
+    const physics::Vec3<double> p{ inwards(0), inwards(1), inwards(2) };
     const double start = std::hypot(rest[0] - centre[0], rest[1] - centre[1], rest[2] - centre[2]);
     return std::hypot(p.x - centre[0], p.y - centre[1], p.z - centre[2]) - start;
   }
@@ -105,14 +108,21 @@ public:
   NodeState state{};
 
 private:
+  RigidTransform pose(int step) const
+  {
+    const double c = std::cos(rate_ * step * dt), s = std::sin(rate_ * step * dt);
+    return { { { c, -s, 0, s, c, 0, 0, 0, 1 } }, { { 0, 0, 0 } } };
+  }
+
   bool glides_;
   physics::DistanceField field_;
   double level_;
   SlidingNodeField node_{};
   float4 at_{}, samples_[sample_words]{}, plane_{};
   float friction_, pressing_ = 0;
-  GlidingNode gliding_{};
-  std::vector<double> poses_;
+  float4 bone_{};
+  std::vector<float4> motions_;
+  double rate_ = 0;
   StepArguments g_{};
 };
 

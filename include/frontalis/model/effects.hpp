@@ -26,6 +26,8 @@ EffectSet effects_of(const Model& model);
 
 /// Whether one of the voxel's materials is viscous.
 bool is_viscous(const Model& model, std::size_t voxel);
+/// Whether the voxel contains tissue of a law other than neo-Hookean.
+bool has_law(const Model& model, std::size_t voxel);
 
 /// A rigid body. Either tissue may touch and push it, or it is only shown (BodyShape::only_shown).
 struct TouchedBody
