@@ -185,8 +185,12 @@ VectorXd ForwardRuns::settle(const std::map<std::string, double>& values, bool f
     throw Error(fmt::format("with{}: {}", of, error.what()));
   }
   if (!reached && motion_before > resting_motion)
+  {
+    // Before the first window has ended, there is only its motion so far.
+    const double moved = std::isfinite(motion_before) ? motion_before : largest_distance(places(), window_begin);
     throw Error(fmt::format("no equilibrium with{}: after {:g} s of relaxation a landmark moves by {:.2g} mm in {:g} s",
-                            of, longest_relaxation, 1e3 * motion_before, rest_window));
+                            of, longest_relaxation, 1e3 * moved, rest_window));
+  }
   return now;
 }
 
