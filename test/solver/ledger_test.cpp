@@ -73,7 +73,7 @@ TEST_P(Ledger, closes_for_a_bar_that_falls_and_swings)
 // Above 1.8 / time step, damping leaves a nineteenth of each velocity.
 TEST_P(Ledger, closes_with_damping_above_its_limit)
 {
-  Model model = bar(1e5);
+  Model model = bar(3e5);
   model.gravity = { { 0, 0, -9.81 } };
   const auto solver = accounting(model);
   const EnergyLedger ledger = play(*solver, {}, 0.02, 2);
