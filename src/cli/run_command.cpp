@@ -30,9 +30,7 @@ constexpr double steps_per_slice = 4096;
 struct RunOptions
 {
   ModelSource source;
-  std::string activation;
-  std::string expression;
-  std::string activation_file;
+  std::string activation, expression, activation_file;
   std::vector<std::string> bones;
   std::vector<std::string> without;
   bool to_equilibrium = false;
@@ -347,7 +345,8 @@ void add_run_command(CLI::App& app)
   command->add_flag("--demo", options->demo, "play the scene's demo once, expressions and poses of bones");
   command->add_flag("--to-equilibrium", options->to_equilibrium,
                     "relax to equilibrium under the final activations, within --seconds (10)");
-  add_positive(*command, "--tolerance", options->tolerance, "of equilibrium: motion left over displacement (0.001)");
+  add_positive(*command, "--tolerance", options->tolerance,
+               "of equilibrium: remaining motion divided by displacement (0.001)");
   command->add_flag("--ledger", options->solver.ledger, "keep the energy ledger and print it");
   command->add_option("--bone", options->bones,
                       "motion of a bone in the face frame: NAME=X,Y,Z,RX,RY,RZ, shift [mm] and rotation vector about "
@@ -368,7 +367,8 @@ void add_run_command(CLI::App& app)
                       "FILE.png, and FILE.svg beside it: force on bodies that tissue touches, over time");
   command->add_option("--movie", options->movie,
                       "FILE.gif, drawn without a display and joined by ImageMagick, or a folder for frame_NNNN.png");
-  command->add_flag("--wrinkles", options->wrinkles, "measure furrows that the skin has not at rest");
+  command->add_flag("--wrinkles", options->wrinkles,
+                    "measure the furrows that the skin has at the end but not at rest");
   command
       ->add_option(
           "--wrinkles-in", options->wrinkles_in,

@@ -72,6 +72,8 @@ void FacePublisher::start(std::shared_ptr<const Model> model, const std::string&
   standard_landmarks_ = standard_landmarks(*model_);
   lines_ = std::make_unique<MuscleLines>(*model_);
   skin_muscles_ = std::make_unique<SkinMuscles>(*model_);
+  body_markers_ = replacing(to_bodies(*model_, face_frame_), shown_bodies_);
+  eye_markers_ = replacing(to_eyeballs(*model_, face_frame_), shown_eyes_);
   publish_bodies();
   bodies_due_ = ros::WallTime();
   shapes_ = body_shapes(*model_);
@@ -105,12 +107,12 @@ void FacePublisher::start(std::shared_ptr<const Model> model, const std::string&
 
 void FacePublisher::publish_bodies()
 {
-  publish_latched(to_bodies(*model_, face_frame_), bodies_, shown_bodies_);
-  publish_latched(to_eyeballs(*model_, face_frame_), eyes_, shown_eyes_);
+  bodies_.publish(body_markers_);
+  eyes_.publish(eye_markers_);
 }
 
-void FacePublisher::publish_latched(visualization_msgs::MarkerArray markers, const ros::Publisher& publisher,
-                                    MarkerNames& shown)
+visualization_msgs::MarkerArray FacePublisher::replacing(visualization_msgs::MarkerArray markers,
+                                                         MarkerNames& shown) const
 {
   const MarkerNames former = std::exchange(shown, {});
   for (const auto& marker : markers.markers)
@@ -128,7 +130,7 @@ void FacePublisher::publish_latched(visualization_msgs::MarkerArray markers, con
     removal.pose.orientation.w = 1;
     removal.action = visualization_msgs::Marker::DELETE;
   }
-  publisher.publish(markers);
+  return markers;
 }
 
 void FacePublisher::set_colour(SkinColour colour, SkinField field, double range)
@@ -238,6 +240,8 @@ bool FacePublisher::publish(const Frame& frame, const ros::Time& stamp, bool pau
   {
     bodies_due_.reset();
     publish_bodies();
+    body_markers_.markers.clear();
+    eye_markers_.markers.clear();
   }
   return true;
 }

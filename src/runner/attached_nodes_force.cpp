@@ -4,7 +4,8 @@ namespace frontalis
 {
 
 // An attached node moves by the share `ratio` of its master's motion relative to the bone. By the principle of virtual
-// work, the master feels that share of the force, and the bone feels the rest.
+// work, the master feels that share of the force, and the bone feels the rest. Of a force
+// on a node that slides on a surface, this is true of the part along the surface's normal.
 void add_attached_nodes(BoneForces& bones)
 {
   using Vector = BoneForces::Vector;
@@ -26,10 +27,11 @@ void add_attached_nodes(BoneForces& bones)
     if (surface.bone < 0)
       continue;
     const Vector at = bones.place_of(node.node), master = bones.place_of(node.master);
-    const Vector normal = bones.normal_at(surface, at);
-    const double pressing = dot(normal, force);
-    bones.add_at(surface.bone, at, pressing * normal);
-    bones.add_at(surface.bone, master, -node.ratio * pressing * bones.normal_at(surface, master));
+    const Vector normal = bones.normal_at(surface, at), of_master = bones.normal_at(surface, master);
+    const Vector pressing = carried(normal, 0, force);
+    bones.add_at(surface.bone, at, pressing);
+    const double both = dot(normal, normal) * dot(of_master, of_master);
+    bones.add_at(surface.bone, master, -node.ratio * (both > 0 ? dot(normal, force) * of_master : pressing));
   }
 }
 

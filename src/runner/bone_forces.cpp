@@ -2,16 +2,9 @@
 
 #include "frontalis/model/sample_field.hpp"
 #include "frontalis/physics/sliding.hpp"
-#include "frontalis/solver/rigid_motion.hpp"
 
 namespace frontalis
 {
-namespace
-{
-
-using Vector = BoneForces::Vector;
-
-}  // namespace
 
 BoneForces::BoneForces(Solver& solver, const Model& of)
     : model(of), effects(solver.effects()), pose(solver.controls().bone), sum(of.bones.size())
@@ -39,17 +32,17 @@ RigidTransform BoneForces::pose_of(std::int32_t bone) const
   return bone < 0 ? RigidTransform() : pose[static_cast<std::size_t>(bone)];
 }
 
-Vector BoneForces::place_of(std::int32_t node) const
+BoneForces::Vector BoneForces::place_of(std::int32_t node) const
 {
   return vector_of(rest_of(node)) + vector_of(displaced_[static_cast<std::size_t>(node)]);
 }
 
-Vector BoneForces::force_of(std::int32_t node) const
+BoneForces::Vector BoneForces::force_of(std::int32_t node) const
 {
   return -1.0 * vector_of(internal_[static_cast<std::size_t>(node)]);
 }
 
-Vector BoneForces::normal_at(const ConstraintSurface& surface, const Vector& at) const
+BoneForces::Vector BoneForces::normal_at(const ConstraintSurface& surface, const Vector& at) const
 {
   const RigidTransform moved = pose_of(surface.bone);
   const physics::DistanceField field = view(surface.field);

@@ -1,13 +1,10 @@
 #pragma once
 
-#include "frontalis/physics/number.hpp"
+#include "frontalis/solver/rigid_motion.hpp"
 #include "frontalis/solver/solver.hpp"
 
 namespace frontalis
 {
-
-inline physics::Vec3<double> vector_of(const std::array<double, 3>& a) { return { a[0], a[1], a[2] }; }
-inline std::array<double, 3> array_of(const physics::Vec3<double>& v) { return { { v.x, v.y, v.z } }; }
 
 /// Forces of tissue on bones at one moment, in the local frame. Nodes count by Solver::internal_forces().
 struct BoneForces
@@ -41,6 +38,11 @@ struct BoneForces
 private:
   std::vector<std::array<double, 3>> internal_, displaced_;
 };
+
+/// The part of a force on a node that a surface carries: the whole component along its unit normal, and as much of the
+/// tangential component as friction can hold. Where there is no normal (zero), the surface carries the whole force, as
+/// it would in equilibrium.
+BoneForces::Vector carried(const BoneForces::Vector& normal, double friction, const BoneForces::Vector& force);
 
 /// Adds the forces of nodes that slide on surfaces of bones.
 void add_gliding_nodes(BoneForces& bones);

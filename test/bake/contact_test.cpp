@@ -144,17 +144,48 @@ TEST(BakedContact, WhatIsOnlyShownContinuesTheSkinAndTouchesNothing)
     ++seam;
   }
   EXPECT_GE(seam, 8);
-  // with a crop of its own it goes on below the skin, deeper by 0.12 of the distance from the skin's crop
+}
+
+TEST(BakedContact, WhatIsOnlyShownGoesOnBelowTheSkinInItsCrop)
+{
+  Scene scene = touched_block();
+  scene.surfaces[0].shape->edge = 2e-3;
+  scene.skin.surface = "block";
+  scene.skin.crop.lower[0] = 3.1e-3;
+  SceneConstraint& shown = scene.constraints[0];
+  shown.surfaces = { "block" };
+  shown.within = 0;
   shown.crop = Region{};
   shown.crop.upper[0] = 5.1e-3;
-  double deepest = 0;
-  const Model below = bake(scene);
-  for (const auto& vertex : below.contacts[0].shape.vertices)
-    if (const auto p = below.to_scene(vertex); p[0] > 3.2e-3 && p[2] < 5e-3)
-      deepest = std::max(deepest, p[0] > 5.2e-3 ? 1 : p[2]);
-  EXPECT_GT(deepest, 0);
-  EXPECT_LT(deepest, 5e-3);
-  EXPECT_GT(below.contacts[0].shape.triangles.size(), contact.shape.triangles.size());
+  // The side z = 0 of the block goes on above itself, higher by 0.12 of the distance from the side of the skin's crop.
+  const Model model = bake(scene);
+  double farthest = 0;
+  for (const auto& vertex : model.contacts[0].shape.vertices)
+  {
+    const auto p = model.to_scene(vertex);
+    if (p[0] < 3.1e-3 || std::abs(p[1] - 6e-3) > 3e-3 || p[2] > 4e-3)
+      continue;
+    EXPECT_NEAR(p[2], 0.12 * (p[0] - 3.1e-3), 1e-9) << p[0] << " " << p[1];
+    farthest = std::max(farthest, p[0]);
+  }
+  EXPECT_NEAR(farthest, 5.1e-3, 1e-9);
+}
+
+TEST(BakedContact, ACropOfWhatIsOnlyShownNeedsASkinThatIsCroppedToo)
+{
+  Scene scene = touched_block();
+  scene.skin.surface = "block";
+  scene.constraints[0].surfaces = { "block" };
+  scene.constraints[0].within = 0;
+  const std::string place = "test.yaml:9: constraint 'touch': 'crop' ";
+  EXPECT_EQ(fault_of(scene).find(place + "shows a part of 'block' below the skin, but the skin has no crop"), 0u)
+      << fault_of(scene);
+  scene.skin.crop.upper[2] = 5.3e-3;
+  EXPECT_EQ(fault_of(scene), "");
+  scene.constraints[0].surfaces = { "plate", "ball" };
+  EXPECT_EQ(
+      fault_of(scene).find(place + "stands beside 'plate', 'ball'; it takes a part of the skin's surface, 'block'"), 0u)
+      << fault_of(scene);
 }
 
 TEST(BakedContact, AFileGivesItBackAndHoldsNothingWithoutIt)

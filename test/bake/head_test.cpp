@@ -2,7 +2,6 @@
 // skin.
 
 #include "bake/mesh/surface.hpp"
-#include "bake/shapes/head/follow_head.hpp"
 #include "bake/shapes/head/head.hpp"
 #include "bake/shapes/muscle_net.hpp"
 
@@ -212,47 +211,6 @@ TEST(Head, IsClosedAndMirrorsItself)
   for (std::size_t i = 0; i < there.size(); ++i)
     different += there[i] != image[i] ? 1 : 0;
   EXPECT_LE(different, there.size() / 500) << "rounding alone may part a few";
-}
-
-TEST(Head, TakesThePlacesOfItsSceneAlong)
-{
-  Scene scene = read_scene(FRONTALIS_SOURCE_DIRECTORY "/config/head.yaml");
-  EXPECT_EQ(following_head(scene).constraints[0].crop.lower, scene.constraints[0].crop.lower);
-  const std::map<std::string, double> dimensions{ { "sn_gn", 0.079 }, { "n_sn", 0.06 }, { "ch_ch", 0.058 } };
-  for (Surface& surface : scene.surfaces)
-    if (surface.shape && surface.shape->head)
-      surface.shape->dimensions = dimensions;
-  const Head head(shipped(), dimensions);
-  const Scene moved = following_head(scene);
-  const auto named = [](const auto& list, const std::string& name) -> const auto&
-  {
-    return *std::find_if(list.begin(), list.end(), [&](const auto& entry) { return entry.name == name; });
-  };
-  // the origin of the face frame stays at the sellion
-  EXPECT_LT((to_vector(moved.frame.origin) - head.landmark("n")).norm(), 2e-3);
-  EXPECT_GT(moved.frame.origin[2], 5e-3);
-  EXPECT_LT((to_vector(named(moved.landmarks, "mouth_corner_left").position) - head.landmark("ch")).norm(), 2e-3);
-  const Region &before = named(scene.constraints, "lateral_orbit_left").crop,
-               &crop = named(moved.constraints, "lateral_orbit_left").crop;
-  const Vector3d middle = (to_vector(before.lower) + to_vector(before.upper)) / 2;
-  EXPECT_LT(((to_vector(crop.lower) + to_vector(crop.upper)) / 2 - head.moved(middle)).norm(), 1e-9);
-  // below more tissue it follows the bone inwards
-  for (Surface& surface : scene.surfaces)
-    if (surface.shape && surface.shape->head)
-      surface.shape->tissue = 1.2;
-  const Region deeper = named(following_head(scene).constraints, "lateral_orbit_left").crop;
-  EXPECT_NEAR(crop.lower[1] - deeper.lower[1], 1.9e-3, 0.8e-3);
-  // the fissure of the mouth and the planes of the grid keep their heights, and there is room below the longer chin
-  const auto fissure = head.part("fissure", 3e-3).vertices;
-  for (const Vector3& p : fissure)
-    EXPECT_LT(std::abs(p[2] + 74.1e-3), 1.5001e-3);
-  EXPECT_NEAR(head.landmark("sto")[2], default_head().landmark("sto")[2], 1e-9);
-  const Region &tissue = named(moved.volumes, "tissue").crop, &shipped_tissue = named(scene.volumes, "tissue").crop;
-  EXPECT_NEAR(std::remainder(tissue.lower[2] - shipped_tissue.lower[2], 6e-3), 0, 1e-9);
-  EXPECT_LT(tissue.lower[2], head.landmark("gn")[2] - 8e-3);
-  EXPECT_EQ(tissue.lower[2], moved.skin.crop.lower[2]);
-  const Shape& cut = *named(moved.surfaces, "cut").shape;
-  EXPECT_NEAR(cut.centre[2] - cut.size[2] / 2, tissue.lower[2], 1e-12);
 }
 
 TEST(Head, HasHairBetweenHairlineAndNapeThatLeavesFaceAndEarsFree)

@@ -160,6 +160,36 @@ TEST(Materials, FibreFamiliesFollowASurface)
   }
 }
 
+TEST(Materials, FibresNormalToTheSurfaceOfTheirFamiliesAreReported)
+{
+  Scene scene = plain_scene(1e-3);
+  scene.surfaces = { box_surface("block", { 4e-3, 4e-3, 2e-3 }, { 8e-3, 8e-3, 4e-3 }) };
+  scene.materials = { of_law("holzapfel", { { "shear", 5e3 }, { "k1", 6e3 }, { "k2", 0.8 }, { "dispersion", 0.1 } }) };
+  scene.materials[0].name = "skin";
+  scene.materials[0].about = "pull";
+  scene.materials[0].along = "block";
+  scene.volumes = { volume_inside("tissue", { "block" }, "skin", true) };
+  SceneMuscle pull;
+  pull.name = "pull";
+  pull.volume = "tissue";
+  scene.muscles = { pull };
+  scene.skin.surface = "block";
+  const auto finding = [&](const Vector3& fibre)
+  {
+    scene.muscles[0].fibre = fibre;
+    BakeReport report;
+    bake(scene, &report);
+    for (const std::string& found : report.findings)
+      if (found.find("are normal to surface 'block'") != std::string::npos)
+        return found;
+    return std::string();
+  };
+  const std::string found = finding({ 0, 0, 1 });
+  EXPECT_EQ(found.find("material 'skin': in "), 0U) << found;
+  EXPECT_NE(found.find(" voxels the fibres of muscle 'pull'"), std::string::npos) << found;
+  EXPECT_EQ(finding(to_array(Vector3d(1, 1, 1).normalized())), "");
+}
+
 // A sphere whose pole is off the fibres of a muscle: its families lie on either side of the fibres, in the surface.
 TEST(Materials, FibreFamiliesLieAboutTheFibresOfAMuscle)
 {

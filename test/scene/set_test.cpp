@@ -14,14 +14,15 @@ namespace
 Scene read_with(const std::string& surfaces, const std::string& muscles, const std::string& more = "")
 {
   const TemporaryFolder folder;
-  return read_scene(folder.write("scene.yaml", "unit: mm\nsurfaces:\n" + surfaces +
-                                                   "volumes:\n"
-                                                   "  body: {inside: tissue, material: flesh, tissue: true}\n"
-                                                   "materials:\n"
-                                                   "  flesh: {young: 30 kPa, poisson: 0.45, density: 1000}\n"
-                                                   "  fibre: {young: 20 kPa, poisson: 0.45, density: 1000}\n"
-                                                   "muscles:\n" +
-                                                   muscles + "skin: {surface: skin}\n" + more));
+  return read_scene(
+      folder.write("scene.yaml", "unit: mm\nsurfaces:\n" + surfaces +
+                                     "volumes:\n"
+                                     "  body: {inside: tissue, material: flesh, tissue: true}\n"
+                                     "materials:\n"
+                                     "  flesh: {young: 30 kPa, poisson: 0.45, density: 1000}\n"
+                                     "  fibre: {young: 20 kPa, poisson: 0.45, density: 1000, tension: 5 kPa}\n"
+                                     "muscles:\n" +
+                                     muscles + "skin: {surface: skin}\n" + more));
 }
 
 std::string error_of(const std::string& surfaces, const std::string& muscles, const std::string& more = "")
@@ -77,6 +78,23 @@ TEST(Set, has_its_muscles_with_volumes_of_their_own)
   EXPECT_EQ(named(scene.volumes, "procerus").material, "flesh");
   const std::map<std::string, double> up{ { "frontalis_left", 0.5 }, { "frontalis_right", 0.5 }, { "procerus", 0.25 } };
   EXPECT_EQ(scene.expressions.at("up").activation, up);
+}
+
+TEST(Set, gives_way_to_a_muscle_that_stands_for_the_tension_of_a_material)
+{
+  const Scene scene = read_with(all,
+                                "  m: {each: brow, cross_section: 90 mm2, passive: true, tone: 0.1, rise_time: 5 ms}\n"
+                                "  procerus: {tension_of: fibre}\n");
+  const SceneMuscle &tense = named(scene.muscles, "procerus"), &other = named(scene.muscles, "frontalis_left");
+  EXPECT_EQ(tense.stress_reference, 5e3);
+  EXPECT_EQ(tense.cross_section, 0);
+  EXPECT_FALSE(tense.passive);
+  EXPECT_FALSE(tense.tension_length);
+  EXPECT_EQ(tense.tone, 1);
+  EXPECT_EQ(tense.rise_time, 5e-3) << "what the tension does not determine is that of the set";
+  EXPECT_NEAR(other.cross_section, 90e-6, 1e-15);
+  EXPECT_TRUE(other.passive);
+  EXPECT_EQ(other.tone, 0.1);
 }
 
 TEST(Set, is_the_same_as_its_entries_written_out)

@@ -70,6 +70,17 @@ TEST_P(Ledger, closes_for_a_bar_that_falls_and_swings)
       }
 }
 
+// Above 1.8 / time step, damping leaves a nineteenth of each velocity.
+TEST_P(Ledger, closes_with_damping_above_its_limit)
+{
+  Model model = bar(3e5);
+  model.gravity = { { 0, 0, -9.81 } };
+  const auto solver = accounting(model);
+  const EnergyLedger ledger = play(*solver, {}, 0.02, 2);
+  EXPECT_GT(0.5 * model.damping * solver->time_step(), 1.5);
+  EXPECT_GT(ledger["damping"], 0.5 * ledger["gravity"]);
+}
+
 TEST_P(Ledger, closes_for_a_muscle_that_shortens_and_lets_go)
 {
   Model model = bar(100);

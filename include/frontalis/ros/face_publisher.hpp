@@ -86,12 +86,12 @@ private:
     boost::shared_ptr<Message> message{};
   };
 
-  /// Shows the bodies and eyeballs of the model in place of those of the model before.
+  /// Publishes the markers of bodies and eyeballs.
   void publish_bodies();
   using MarkerNames = std::set<std::pair<std::string, std::int32_t>>;  ///< `ns` and `id` of markers
-  /// Publishes markers, and removes those in `shown` that they do not replace. `shown`: markers that the topic shows;
+  /// Adds the removal of markers in `shown` that `markers` do not replace. `shown`: markers that the topic shows;
   /// updated.
-  void publish_latched(visualization_msgs::MarkerArray markers, const ros::Publisher& publisher, MarkerNames& shown);
+  visualization_msgs::MarkerArray replacing(visualization_msgs::MarkerArray markers, MarkerNames& shown) const;
   std::vector<float> shown_values(const Frame& frame) const;
 
   Topic<visualization_msgs::Marker> skin_;
@@ -102,6 +102,7 @@ private:
   std::atomic<bool> bone_listeners_{ false };  ///< whether the topic of a bone had subscribers at the latest frame
   ros::Publisher topology_, bodies_, muscles_, eyes_, caption_;
   MarkerNames shown_bodies_, shown_eyes_;
+  visualization_msgs::MarkerArray body_markers_, eye_markers_;  ///< kept until they are published again
   std::optional<ros::WallTime> bodies_due_{};  ///< when bodies are published again; 0: to be decided at the next frame
   ros::NodeHandle handle_;
   tf2_ros::TransformBroadcaster transforms_;

@@ -1,9 +1,18 @@
 #pragma once
 
 #include "frontalis/model/surface.hpp"
+#include "frontalis/physics/number.hpp"
 
 namespace frontalis
 {
+
+/// Arrays, in which the public interface has points and vectors, as vectors to compute with, and back.
+template <class Number>
+physics::Vec3<double> vector_of(const std::array<Number, 3>& a)
+{
+  return { static_cast<double>(a[0]), static_cast<double>(a[1]), static_cast<double>(a[2]) };
+}
+inline std::array<double, 3> array_of(const physics::Vec3<double>& v) { return { { v.x, v.y, v.z } }; }
 
 /// Whether all numbers are finite and the rotation is proper (no reflection, no scaling), to within 1e-6.
 bool is_rigid_motion(const RigidTransform& pose);

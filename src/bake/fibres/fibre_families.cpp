@@ -8,6 +8,7 @@ namespace
 {
 
 constexpr std::size_t grain = 1024;
+constexpr double least_sine = 1e-3;  // of the angle between fibres and normal; below it they have no common plane
 
 /// The shortest rotation from unit vector `from` to `to`. If they are opposite, rotates about `axis`, normal to `from`.
 Eigen::Quaterniond shortest_rotation(const Vector3d& from, const Vector3d& to, const Vector3d& axis)
@@ -17,11 +18,12 @@ Eigen::Quaterniond shortest_rotation(const Vector3d& from, const Vector3d& to, c
   return Eigen::Quaterniond::FromTwoVectors(from, to);
 }
 
-/// The directions at `angle` [rad] to both sides of the part of `fibre` that is perpendicular to `normal`.
+/// The directions at `angle` [rad] to both sides of the part of `fibre` that is perpendicular to `normal`, or of any
+/// direction that is, if `fibre` is parallel to `normal`.
 std::array<Vector3d, 2> families_about(const Vector3d& fibre, const Vector3d& normal, double angle)
 {
   Vector3d along = fibre - fibre.dot(normal) * normal;
-  along = along.norm() > 1e-3 ? along.normalized() : normal.unitOrthogonal();
+  along = along.norm() > least_sine ? along.normalized() : normal.unitOrthogonal();
   const Vector3d aside = std::sin(angle) * normal.cross(along);
   return { std::cos(angle) * along + aside, std::cos(angle) * along - aside };
 }
@@ -81,6 +83,7 @@ void turn_families(const Scene& scene, const PreparedSurfaces& surfaces, const s
   if (std::all_of(main.begin(), main.end(), [](int m) { return m < 0; }))
     return;
   model.material_directions.assign(voxels, {});
+  std::vector<char> upright(voxels, 0);
   parallel_for(monitor, voxels, grain,
                [&](std::size_t e)
                {
@@ -89,8 +92,11 @@ void turn_families(const Scene& scene, const PreparedSurfaces& surfaces, const s
                    return;
                  std::array<Vector3d, 2> families;
                  if (about[m] != nullptr)
-                   families =
-                       families_about(about[m]->at(frame.voxel_centre(model, e)), normal[e], scene.materials[m].angle);
+                 {
+                   const Vector3d fibre = about[m]->at(frame.voxel_centre(model, e));
+                   upright[e] = fibre.cross(normal[e]).norm() > least_sine ? 0 : 1;
+                   families = families_about(fibre, normal[e], scene.materials[m].angle);
+                 }
                  else
                  {
                    const auto& [first, second] = scene.materials[m].families;
@@ -102,6 +108,17 @@ void turn_families(const Scene& scene, const PreparedSurfaces& surfaces, const s
                    Eigen::Map<Eigen::Vector3f>(&model.material_directions[e][3 * family]) =
                        frame.turn(families[family].normalized().eval()).cast<float>();
                });
+  for (std::size_t m = 0; m < about.size(); ++m)
+  {
+    std::size_t count = 0;
+    for (std::size_t e = 0; e < voxels; ++e)
+      count += main[e] == static_cast<int>(m) ? upright[e] : 0;
+    if (count > 0)
+      monitor.found(
+          "material '{}': in {} voxels the fibres of muscle '{}' are normal to surface '{}'; the families "
+          "there lie about any direction in that surface",
+          scene.materials[m].name, count, scene.materials[m].about, scene.materials[m].along);
+  }
 }
 
 }  // namespace frontalis

@@ -134,6 +134,9 @@ Vector3 centre_of(const TriangleMesh& mesh)
   return to_array(box.center());
 }
 
+// Whether a region has a side.
+bool is_bounded(const Region& region) { return region.lower != Region{}.lower || region.upper != Region{}.upper; }
+
 // The part of a mesh outside of a region. It has the same points on the region's sides as cut_mesh(mesh, region).
 TriangleMesh part_beyond(const TriangleMesh& mesh, const Region& region)
 {
@@ -170,6 +173,22 @@ TriangleMesh part_below(const TriangleMesh& mesh, const Region& region, const Re
     p = to_array(to_vector(p) - slope * std::max(0.0, away) * normals[v]);
   }
   return below;
+}
+
+// Throws Error if the crop of surfaces that are only shown has nothing to act on.
+void check_shown_crop(const Scene& scene, const SceneConstraint& constraint, const std::string& place)
+{
+  const std::vector<std::string>& shown = constraint.surfaces;
+  if (std::find(shown.begin(), shown.end(), scene.skin.surface) == shown.end())
+    throw failure(
+        "{}: 'crop' stands beside '{}'; it takes a part of the skin's surface, '{}': show that surface, or leave out "
+        "'crop'",
+        place, fmt::join(shown, "', '"), scene.skin.surface);
+  if (!is_bounded(scene.skin.crop))
+    throw failure(
+        "{}: 'crop' shows a part of '{}' below the skin, but the skin has no crop, so that it is that whole surface: "
+        "give 'skin' a 'crop', or leave out this one",
+        place, scene.skin.surface);
 }
 
 // Index of a bone in the model, which is added if it is new; -1 without a name.
@@ -269,13 +288,15 @@ void bind_contacts(const Scene& scene, const PreparedSurfaces& surfaces, const L
     // no tissue touches a body that is only shown
     if (constraint.within == 0)
     {
+      if (is_bounded(constraint.crop))
+        check_shown_crop(scene, constraint, place);
       for (const std::string& name : constraint.surfaces)
       {
         TriangleMesh mesh = named_surface(surfaces, name, place).mesh();
         if (name == scene.skin.surface)
         {
           TriangleMesh rest = part_beyond(mesh, scene.skin.crop);
-          if (constraint.crop.lower != Region{}.lower || constraint.crop.upper != Region{}.upper)
+          if (is_bounded(constraint.crop))
             append(rest, part_below(mesh, scene.skin.crop, constraint.crop));
           join_vertices(rest);
           mesh = std::move(rest);

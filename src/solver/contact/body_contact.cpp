@@ -43,7 +43,7 @@ BodyContact<Real>::BodyContact(const Model& model, const Discretisation& discret
     for (std::size_t p = 0; p < contact.points.size(); ++p)
       if (contact.area[p] > 0)
         points_.push_back({ contact.binding.voxel[p], static_cast<std::int32_t>(c), contact.binding.coordinates[p],
-                            static_cast<float>(stiffness->of(c, p)), vector(contact.points[p]) });
+                            static_cast<float>(stiffness->of(c, p)), vector_of(contact.points[p]) });
   }
   if (points_.empty())
     return;

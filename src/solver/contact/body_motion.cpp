@@ -1,7 +1,5 @@
 #include "solver/contact/body_motion.hpp"
 
-#include "frontalis/solver/rigid_motion.hpp"
-
 #include <cmath>
 
 namespace frontalis
@@ -41,7 +39,7 @@ double longest_way(const RigidTransform& from, const RigidTransform& to, const s
 
 BodyMotion motion_between(const RigidTransform& from, const RigidTransform& to)
 {
-  BodyMotion motion{ vector(to.translation) - vector(from.translation), { 0, 0, 0 } };
+  BodyMotion motion{ vector_of(to.translation) - vector_of(from.translation), { 0, 0, 0 } };
   // The vector of a small rotation is the skew part of to * from^T.
   double* const turn[3] = { &motion.turn.x, &motion.turn.y, &motion.turn.z };
   for (int axis = 0; axis < 3; ++axis)
@@ -56,8 +54,8 @@ BodyMotion motion_between(const RigidTransform& from, const RigidTransform& to)
 
 double work_between(const Reaction& before, const Reaction& after, const BodyMotion& motion)
 {
-  return -0.5 * (dot(vector(before.force) + vector(after.force), motion.shift) +
-                 dot(vector(before.moment) + vector(after.moment), motion.turn));
+  return -0.5 * (dot(vector_of(before.force) + vector_of(after.force), motion.shift) +
+                 dot(vector_of(before.moment) + vector_of(after.moment), motion.turn));
 }
 
 }  // namespace frontalis

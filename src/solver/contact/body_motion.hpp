@@ -1,13 +1,11 @@
 #pragma once
 
-#include "frontalis/model/surface.hpp"
-#include "frontalis/physics/number.hpp"
 #include "frontalis/solver/reaction.hpp"
+#include "frontalis/solver/rigid_motion.hpp"
 
 namespace frontalis
 {
 
-inline physics::Vec3<double> vector(const std::array<double, 3>& a) { return { a[0], a[1], a[2] }; }
 void add_vector(std::array<double, 3>& sum, const physics::Vec3<double>& v);
 
 /// Adds the opposite of a force on the tissue [N] to `sum`. `arm`: from the origin of the body's frame to the force's

@@ -18,12 +18,13 @@ BodyState moved_on(const Contact& contact, const BodyState& before, const Reacti
   BodyState after{ held_pose(contact, bones), 0, 0, 0, { 0, 0, 0 }, { 0, 0, 0 } };
   if (!(contact.mass > 0))
     return after;
-  after.held_at = vector(after.pose(contact.centre));
+  after.held_at = vector_of(after.pose(contact.centre));
   if (!(before.dt > 0))
     return after;
-  const Vector centre = vector(before.pose(contact.centre));
+  const Vector centre = vector_of(before.pose(contact.centre));
   const Vector held_velocity = (1 / before.dt) * (after.held_at - before.held_at);
-  const Vector force = vector(contact.force) + vector(reaction.force) + contact.spring * (before.held_at - centre);
+  const Vector force =
+      vector_of(contact.force) + vector_of(reaction.force) + contact.spring * (before.held_at - centre);
   const double inertia = contact.mass / before.kick, half = 0.5 * contact.damping;
   after.velocity =
       (1 / (inertia + half)) * ((inertia - half) * before.velocity + force + contact.damping * held_velocity);

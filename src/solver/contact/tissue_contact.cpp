@@ -372,7 +372,7 @@ void TissueContact<Real>::add_energies(const Real* const u[3], const std::vector
     std::vector<std::uint8_t> summed(vertex_blocks_.size(), 0);
     add_up(copy, all, sums, summed, no_losses);
     push(all, moved, sums, summed, node_forces,
-         [&](std::int32_t node, const std::array<double, 3>& part) { add_vector(forces[node], vector(part)); });
+         [&](std::int32_t node, const std::array<double, 3>& part) { add_vector(forces[node], vector_of(part)); });
   }
   if (open)
     opened_[0] = lost;

@@ -33,8 +33,8 @@ std::vector<Facet> facets_of(const TriangleMesh& mesh)
   std::vector<Facet> facets;
   for (const auto& t : mesh.triangles)
   {
-    const Vector a = vector(mesh.vertices[t[0]]);
-    const Vector area = 0.5 * cross(vector(mesh.vertices[t[1]]) - a, vector(mesh.vertices[t[2]]) - a);
+    const Vector a = vector_of(mesh.vertices[t[0]]);
+    const Vector area = 0.5 * cross(vector_of(mesh.vertices[t[1]]) - a, vector_of(mesh.vertices[t[2]]) - a);
     facets.push_back({ area, (1 / std::max(norm(area), 1e-30)) * area });
   }
   return facets;
@@ -138,7 +138,7 @@ void TouchingSurface::add(std::int32_t contact, std::int32_t first_source)
       v.source = first_source + source;
       v.coordinates = from.binding.coordinates[source];
       v.area_share = static_cast<float>(area / std::max(areas[source], 1e-30));
-      v.rest = vector(mesh.vertices[source]);
+      v.rest = vector_of(mesh.vertices[source]);
       v.normal = (1 / std::max(norm(normal), 1e-30)) * normal;
       set_frame(v);
       vertices.push_back(v);
@@ -171,7 +171,7 @@ void TouchingSurface::join(const TriangleMesh& mesh, std::int32_t first_source, 
       reached.push_back(from);
       for (const auto to : around[from])
       {
-        const double next = at + norm(vector(mesh.vertices[to]) - vector(mesh.vertices[from]));
+        const double next = at + norm(vector_of(mesh.vertices[to]) - vector_of(mesh.vertices[from]));
         if (next < way[to])
         {
           way[to] = next;

@@ -14,7 +14,7 @@ void add_shell_energies(const Model& model, const ShellMesh& mesh, const Real* c
   std::vector<Vector> moved, on_vertex(mesh.binding.voxel.size());
   moved.reserve(on_vertex.size());
   for (std::size_t v = 0; v < on_vertex.size(); ++v)
-    moved.push_back(vector(bound_displacement(model, mesh.binding, v, u)));
+    moved.push_back(vector_of(bound_displacement(model, mesh.binding, v, u)));
   for (const ShellMesh::Triangle& triangle : mesh.triangles)
   {
     Vector of_triangle[6];

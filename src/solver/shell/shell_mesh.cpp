@@ -72,8 +72,8 @@ std::vector<Vector> carried_vertices(const Model& model, const Shell& shell)
     physics::trilinear_weights<double>(at[0], at[1], at[2], weight);
     Vector carried{ 0, 0, 0 };
     for (std::size_t b = 0; b < 8; ++b)
-      carried = carried + weight[b] * vector(rest_position(model, model.voxel_nodes[shell.binding.voxel[v]][b]));
-    const Vector own = vector(shell.surface.vertices[v]);
+      carried = carried + weight[b] * vector_of(rest_position(model, model.voxel_nodes[shell.binding.voxel[v]][b]));
+    const Vector own = vector_of(shell.surface.vertices[v]);
     places.push_back(norm(own - carried) < coordinate_rounding * model.spacing[0] ? own : carried);
   }
   return places;
@@ -208,8 +208,8 @@ void ShellMesh::add(const Model& model, const Shell& shell)
       const std::int32_t outer = beyond[i] ? across->second : t[0];
       x[i] = carried[t[i]];
       x[i + 3] = carried[outer];
-      creased[i] = frontalis::vector(shell.surface.vertices[t[i]]);
-      creased[i + 3] = frontalis::vector(shell.surface.vertices[outer]);
+      creased[i] = vector_of(shell.surface.vertices[t[i]]);
+      creased[i + 3] = vector_of(shell.surface.vertices[outer]);
       vertex[i] = first + t[i];
       vertex[i + 3] = first + outer;
     }

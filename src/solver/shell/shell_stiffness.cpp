@@ -45,7 +45,7 @@ void ShellStiffness::add_forces(const Model& model, const std::vector<std::array
   std::vector<Vector> moved, on_vertex(mesh_.binding.voxel.size());
   moved.reserve(on_vertex.size());
   for (std::size_t v = 0; v < on_vertex.size(); ++v)
-    moved.push_back(vector(bound_displacement(model, mesh_.binding, v, u)));
+    moved.push_back(vector_of(bound_displacement(model, mesh_.binding, v, u)));
   for (const ShellMesh::Triangle& t : mesh_.triangles)
   {
     const auto& rest = t.rest;

@@ -1,6 +1,6 @@
 #include "solver/skin/film_equilibrium.hpp"
 
-#include "frontalis/physics/number.hpp"
+#include "frontalis/solver/rigid_motion.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -21,12 +21,6 @@ constexpr int most_iterations = 40;
 // The solution is found if an iteration lowers the energy by less than this fraction.
 constexpr double tolerance = 3e-4;
 constexpr double seed_height = 0.05;  // root mean square of the initial heights, divided by the film's thickness
-
-template <class Number>
-Vector vector_of(const std::array<Number, 3>& p)
-{
-  return { p[0], p[1], p[2] };
-}
 
 std::array<float, 6> product(const Vector& a, const Vector& b, double scale)
 {

@@ -4,6 +4,7 @@
 
 #include "frontalis/physics/ramp.hpp"
 #include "frontalis/physics/trilinear.hpp"
+#include "frontalis/solver/rigid_motion.hpp"
 
 #include <algorithm>
 
@@ -14,8 +15,6 @@ namespace
 
 using Vector = physics::Vec3<double>;
 
-Vector vector(const std::array<double, 3>& a) { return { a[0], a[1], a[2] }; }
-
 // Forces on the vertices of a loaded surface. Each corner takes a third of its triangle's force, which is the area
 // vector times the pressure, or the area times the traction.
 void vertex_forces(const Load& load, double ramp, const std::vector<std::array<double, 3>>& vertices,
@@ -24,10 +23,10 @@ void vertex_forces(const Load& load, double ramp, const std::vector<std::array<d
   std::fill(forces.begin(), forces.end(), std::array<double, 3>{ { 0, 0, 0 } });
   for (const auto& t : load.mesh.triangles)
   {
-    const Vector a = vector(vertices[t[0]]);
-    const Vector area = 0.5 * cross(vector(vertices[t[1]]) - a, vector(vertices[t[2]]) - a);
+    const Vector a = vector_of(vertices[t[0]]);
+    const Vector area = 0.5 * cross(vector_of(vertices[t[1]]) - a, vector_of(vertices[t[2]]) - a);
     const Vector force = load.kind == Load::Kind::pressure ? (-ramp * load.value[0] / 3) * area
-                                                           : (ramp * norm(area) / 3) * vector(load.value);
+                                                           : (ramp * norm(area) / 3) * vector_of(load.value);
     for (const auto corner : t)
     {
       forces[corner][0] += force.x;

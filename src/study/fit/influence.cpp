@@ -32,7 +32,7 @@ constexpr double interior_share = 0.1;
 
 std::vector<double> numbers_of(const VectorXd& vector) { return { vector.begin(), vector.end() }; }
 
-VectorXd vector_of(const nlohmann::json& json, std::size_t size)
+VectorXd places_from(const nlohmann::json& json, std::size_t size)
 {
   const auto numbers = json.get<std::vector<double>>();
   if (numbers.size() != size)
@@ -61,13 +61,13 @@ Influence read_influence(const std::string& path, const Model& model)
       if (json.at(key) != nlohmann::json(value))
         return {};
     const std::size_t size = 3 * model.landmarks.size();
-    out.rest = vector_of(json.at("rest"), size);
+    out.rest = places_from(json.at("rest"), size);
     for (const auto& [name, column] : json.at("unknowns").items())
     {
       auto& [at, displaced] = out.columns[name];
       at = column.at("at").get<std::array<double, 2>>();
       for (const std::size_t side : { 0, 1 })
-        displaced[side] = vector_of(column.at("displaced").at(side), size);
+        displaced[side] = places_from(column.at("displaced").at(side), size);
     }
     return out;
   }
@@ -185,8 +185,12 @@ VectorXd ForwardRuns::settle(const std::map<std::string, double>& values, bool f
     throw Error(fmt::format("with{}: {}", of, error.what()));
   }
   if (!reached && motion_before > resting_motion)
+  {
+    // Before the first window has ended, there is only its motion so far.
+    const double moved = std::isfinite(motion_before) ? motion_before : largest_distance(places(), window_begin);
     throw Error(fmt::format("no equilibrium with{}: after {:g} s of relaxation a landmark moves by {:.2g} mm in {:g} s",
-                            of, longest_relaxation, 1e3 * motion_before, rest_window));
+                            of, longest_relaxation, 1e3 * moved, rest_window));
+  }
   return now;
 }
 

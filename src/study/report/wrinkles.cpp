@@ -116,7 +116,7 @@ SmoothSkin smooth_skin(const SkinState& skin, const SkinTriangles& triangles, do
     if (progress && i % vertices_per_report == 0)
       progress(static_cast<double>(i) / static_cast<double>(skin.vertices.size()));
     const Vector at = to_eigen(skin.vertices[i]), own = to_eigen(skin.normals[i]);
-    std::vector<std::pair<Piece, double>> near;  // pieces near the vertex, and their weights
+    std::vector<std::pair<const Piece*, double>> near;  // pieces near the vertex, and their weights
     Vector normal = Vector::Zero();
     cells.near(at,
                [&](const Piece& piece)
@@ -124,7 +124,7 @@ SmoothSkin smooth_skin(const SkinState& skin, const SkinTriangles& triangles, do
                  // The other side of a thin sheet, such as a lip, does not belong to this skin.
                  if (own.dot(piece.normal) < -0.5)
                    return;
-                 near.emplace_back(piece,
+                 near.emplace_back(&piece,
                                    piece.area * std::exp(-0.5 * (piece.place - at).squaredNorm() / (window * window)));
                  normal += near.back().second * piece.normal;
                });
@@ -134,7 +134,7 @@ SmoothSkin smooth_skin(const SkinState& skin, const SkinTriangles& triangles, do
     Eigen::Matrix<double, 6, 1> right = Eigen::Matrix<double, 6, 1>::Zero();
     for (const auto& [piece, weight] : near)
     {
-      const Vector d = (piece.place - at) / window;
+      const Vector d = (piece->place - at) / window;
       const double x = d.dot(a), y = d.dot(b);
       Eigen::Matrix<double, 6, 1> terms;
       terms << 1, x, y, x * x, x * y, y * y;

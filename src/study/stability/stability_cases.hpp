@@ -1,7 +1,7 @@
 #pragma once
 
-#include "frontalis/physics/number.hpp"
 #include "frontalis/solver/guard.hpp"
+#include "frontalis/solver/rigid_motion.hpp"
 #include "frontalis/study/stability.hpp"
 #include "frontalis/study/voxel_model.hpp"
 #include "study/stability/case_file.hpp"
@@ -117,7 +117,6 @@ Model damped_block(const CaseFile& file);
 void hold_face(Model& model, int axis, bool upper, const std::string& bone = {});
 void hold_ends(Model& model, int axis, const std::string& bone = {});
 
-inline physics::Vec3<double> vector(const Point& p) { return { p[0], p[1], p[2] }; }
 /// Largest |a - b| [m] of all nodes; without `b`, largest |a|.
 double farthest(const Vectors& a, const Vectors& b = {});
 

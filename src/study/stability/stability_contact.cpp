@@ -46,7 +46,7 @@ Controls moved(const GuardedTrial& motion, const std::vector<Point>& shifts)
   return controls;
 }
 
-Point vector_of(const CaseRun& run, const std::string& key)
+Point way_of(const CaseRun& run, const std::string& key)
 {
   const std::vector<double> way = run.numbers(key, "mm", 3);
   return { { 1e-3 * way[0], 1e-3 * way[1], 1e-3 * way[2] } };
@@ -104,7 +104,7 @@ void finger(CaseRun& run)
   const double radius = 1e-3 * run.number("radius", "mm");
   const Point tip{ { 1e-3 * run.number("from", "mm"), 0.5e-3 * model.size[1], 1e-3 * model.size[2] + radius } };
   touch(model, "finger", true, sphere_field(tip, radius), run.number("friction"));
-  const Point pushed{ { 0, 0, -1e-3 * run.number("push", "mm") } }, drawn = plus(pushed, vector_of(run, "draw"));
+  const Point pushed{ { 0, 0, -1e-3 * run.number("push", "mm") } }, drawn = plus(pushed, way_of(run, "draw"));
   GuardedTrial motion(run, model);
   motion.advance({ run.seconds("pushing"), moved(motion, { pushed }), 20 });
   run.check("depth of tissue in the finger", "mm", 0, 1e3 * deepest(motion), "depth");
@@ -188,7 +188,7 @@ void body_jump(CaseRun& run)
   Model model = damped_block(run);
   hold_face(model, 2, false);
   touch(model, "body", true, flat_body(1e-3 * model.size[2] + 1e-6, 1), run.number("friction"));
-  const Controls jumped{ {}, { shifted(vector_of(run, "jump")) } };
+  const Controls jumped{ {}, { shifted(way_of(run, "jump")) } };
   const double step = make_solver(std::make_shared<const Model>(model))->time_step();
   for (const auto& [name, seconds] :
        { std::pair<std::string, double>{ "frame", run.seconds("frame") }, { "millisecond", 1e-3 }, { "step", step } })
@@ -209,7 +209,7 @@ void sharp_edge(CaseRun& run)
   hold_face(model, 2, false);
   touch(model, "edge", true, wedge(model, 1e-3 * run.number("from", "mm"), 1e-3 * model.size[2]),
         run.number("friction"));
-  const Point pressed{ { 0, 0, -1e-3 * run.number("press", "mm") } }, drawn = plus(pressed, vector_of(run, "draw"));
+  const Point pressed{ { 0, 0, -1e-3 * run.number("press", "mm") } }, drawn = plus(pressed, way_of(run, "draw"));
   GuardedTrial motion(run, model);
   motion.advance({ run.seconds("pressing"), moved(motion, { pressed }), 20 });
   motion.advance({ run.seconds("drawing"), moved(motion, { drawn }), 20 });
@@ -227,7 +227,7 @@ void pinched_sheet(CaseRun& run)
   touch(model, "lower", false, sphere_field(plus(middle, { { 0, 0, -radius } }), radius), run.number("friction"));
   touch(model, "upper", true, sphere_field(plus(middle, { { 0, 0, top + radius } }), radius), run.number("friction"));
   const double pinch = 1e-3 * run.number("pinch", "mm");
-  const Point draw = vector_of(run, "draw"), up{ { 0, 0, pinch } }, down{ { 0, 0, -pinch } };
+  const Point draw = way_of(run, "draw"), up{ { 0, 0, pinch } }, down{ { 0, 0, -pinch } };
   const Point apart{ { 0, 0, 4 * pinch } }, below{ { 0, 0, -4 * pinch } };
   GuardedTrial motion(run, model);
   motion.advance({ run.seconds("pinching"), moved(motion, { up, down }), 20 });

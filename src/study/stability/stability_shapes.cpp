@@ -137,11 +137,11 @@ void rigid_rotation(CaseRun& run)
   const double rate = 2 * physics::pi * run.number("rate", "1/s");
   Vectors u(model.nodes.size()), v;
   const double third = 1 / std::sqrt(3.0);
-  const auto middle = 0.5e-3 * vector({ { 1.0 * model.size[0], 1.0 * model.size[1], 1.0 * model.size[2] } });
+  const auto middle = 0.5e-3 * vector_of(model.size);
   for (std::size_t n = 0; n < u.size(); ++n)
   {
-    const auto turning = rate * cross({ third, third, third }, vector(rest_position(model, n)) - middle);
-    v.push_back({ { turning.x, turning.y, turning.z } });
+    const auto turning = rate * cross({ third, third, third }, vector_of(rest_position(model, n)) - middle);
+    v.push_back(array_of(turning));
   }
   GuardedTrial motion(run, model);
   motion.set(u, v);
@@ -156,8 +156,8 @@ void rigid_rotation(CaseRun& run)
   for (std::size_t n = 0; n < now.size(); ++n)
   {
     const std::size_t opposite = now.size() - 1 - n;
-    const auto before = vector(rest_position(model, n)) - vector(rest_position(model, opposite));
-    const auto after = before + vector(now[n]) - vector(now[opposite]);
+    const auto before = vector_of(rest_position(model, n)) - vector_of(rest_position(model, opposite));
+    const auto after = before + vector_of(now[n]) - vector_of(now[opposite]);
     if (norm(before) > 0)
       worst = std::max(worst, std::abs(norm(after) / norm(before) - 1));
   }

@@ -2,8 +2,6 @@
 
 #include "frontalis/physics/number.hpp"
 
-#include <algorithm>
-
 namespace frontalis
 {
 namespace physics
@@ -20,14 +18,21 @@ struct Kick
   T impulse[3];  ///< gain times gravity [m/s]
 };
 
+/// What a step leaves of a velocity without forces. `half`: half of damping times seconds.
+FRONTALIS_LAW double kept_velocity(double half)
+{
+  const double limited = Number<double>::min(half, 0.9);
+  return (1 - limited) / (1 + limited);
+}
+
 /// `damping`: mass-proportional [1/s]; `seconds`: time over which forces change velocities; gravity [m/s2]. With
 /// damping above 1.8 / `seconds`, a step leaves a nineteenth of each velocity, because central differences without this
 /// limit could reverse velocities.
 template <class T, class Gravity>
 Kick<T> kick_of(double damping, double seconds, const Gravity& gravity)
 {
-  const double half = 0.5 * damping * seconds, limited = std::min(half, 0.9), gain = seconds / (1 + half);
-  Kick<T> kick{ static_cast<T>((1 - limited) / (1 + limited)), static_cast<T>(gain), {} };
+  const double half = 0.5 * damping * seconds, gain = seconds / (1 + half);
+  Kick<T> kick{ static_cast<T>(kept_velocity(half)), static_cast<T>(gain), {} };
   for (int axis = 0; axis < 3; ++axis)
     kick.impulse[axis] = static_cast<T>(gain * gravity[axis]);
   return kick;
@@ -74,7 +79,8 @@ struct NodeWork
 FRONTALIS_LAW NodeWork node_work(double before, double free, double after, double beside, double beside_before,
                                  double damping, double kick)
 {
-  const double mean = 0.5 * (before + after), damped = 0.5 * damping * kick * (before + free);
+  const double mean = 0.5 * (before + after), half = 0.5 * damping * kick;
+  const double damped = half * free + (1 - (1 + half) * kept_velocity(half)) * before;
   return { mean * damped, mean * (after - free) - (free - before + damped) * 0.5 * (beside + beside_before) / kick };
 }
 

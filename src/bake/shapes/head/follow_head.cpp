@@ -7,7 +7,8 @@ namespace frontalis
 namespace
 {
 
-constexpr double step = 6e-3;  // [m] by which sides of the tissue move: a multiple of voxels of 1, 2 and 3 mm
+constexpr double step = 6e-3;        // [m] by which sides of the tissue move: a multiple of voxels of 1, 2 and 3 mm
+constexpr double narrow = 4 * step;  // [m]; sides that are closer to each other keep their distance
 
 /// Moves places as a head is deformed.
 class Follower
@@ -16,6 +17,12 @@ public:
   explicit Follower(const Head& head) : head_(head) {}
 
   void move(Vector3& p) const { p = to_array(head_.moved(to_vector(p))); }
+
+  void move(std::vector<Vector3>& points) const
+  {
+    for (Vector3& p : points)
+      move(p);
+  }
 
   /// Moves a region as its middle moves, where a region without end ends at the face. A box of nodes at a bone also
   /// goes along with the bone's depth below the skin.
@@ -33,16 +40,18 @@ public:
     }
   }
 
-  /// Moves each side of a region by itself, in whole steps.
+  /// Moves each side of a region in whole steps. Each goes where its own middle goes; two that are close to each other
+  /// go where the region's middle goes, because rounding could change their distance by as much as they are apart.
   void move_sides(Region& region) const
   {
-    const Vector3d middle = middle_of(region);
-    for (Vector3* corner : { &region.lower, &region.upper })
-      for (int a = 0; a < 3; ++a)
+    const Vector3d middle = middle_of(region), size = to_vector(region.upper) - to_vector(region.lower);
+    for (int a = 0; a < 3; ++a)
+      for (Vector3* corner : { &region.lower, &region.upper })
       {
         double& side = (*corner)[a];
         Vector3d at = middle;
-        at[a] = side;
+        if (size[a] > narrow)
+          at[a] = side;
         if (std::isfinite(side))
           side += step * std::round((head_.moved(at) - at)[a] / step);
       }
@@ -88,12 +97,26 @@ Scene following_head(const Scene& given)
   for (Surface& surface : scene.surfaces)
     if (surface.shape && surface.shape->kind == Shape::Kind::box)
       follower.move_sides(*surface.shape);
-    else if (surface.shape &&
-             (surface.shape->kind == Shape::Kind::sphere || surface.shape->kind == Shape::Kind::ellipsoid))
+    else if (surface.shape && !surface.shape->head)
+    {
       follower.move(surface.shape->centre);
+      for (std::vector<Vector3>& curve : surface.shape->curves)
+        follower.move(curve);
+      for (Shape::Depth& depth : surface.shape->depths)
+        follower.move(depth.at);
+    }
   for (Volume& volume : scene.volumes)
     follower.move_sides(volume.crop);
   follower.move_sides(scene.skin.crop);
+  if (scene.film)
+    follower.move(scene.film->crop);
+  for (SceneMuscle& muscle : scene.muscles)
+  {
+    follower.move(muscle.origin.points);
+    follower.move(muscle.insertion.points);
+    if (muscle.net)
+      follower.move(muscle.net->points);
+  }
   for (SceneConstraint& constraint : scene.constraints)
     if (constraint.within == 0)  // what is only shown joins the skin
       follower.move_sides(constraint.crop);
