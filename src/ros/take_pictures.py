@@ -239,7 +239,7 @@ def take(folder, launch, moments):
     for title, expression in [("neutral", None)] + [(name, name) for name in names] + [
         ("relaxed", at_rest[1] if face.poses() else at_rest[0])
     ]:
-        moment = face.express(expression) if expression or face.poses() else 0
+        moment = face.express(expression or title) if expression or face.poses() else 0
         picture = settled_picture(picture)
         path = os.path.join(folder, title + ".png")
         save(picture, path)
