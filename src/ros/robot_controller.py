@@ -2,8 +2,8 @@
 """Moves the joints of a robot face (doc/robots.md): trajectories in, joint states with efforts out.
 
 It takes the place of a real robot's controller and has the topics of ros_control's joint trajectory controller. Joints follow a
-trajectory at most as fast as the URDF allows. The effort of a joint is the force along its axis, or the torque about it, that holds
-all links behind the joint against the skin. The skin's wrench on a link is ~wrench/LINK of the face.
+trajectory at most as fast as the URDF allows. The effort of a joint is the force along its axis, or the torque about it, that
+holds all links behind the joint against the skin. The skin's wrench on a link is ~wrench/LINK of the face.
 """
 
 import threading
@@ -86,6 +86,7 @@ class Controller:
         rospy.Subscriber("~pose", String, self.take_pose, queue_size=10)
 
     def take_wrench(self, message, target):
+        """Keeps what each joint before a link must hold of the skin's wrench on the link."""
         link, joints = target
         force, torque = ((v.x, v.y, v.z) for v in (message.wrench.force, message.wrench.torque))
         for joint in joints:
