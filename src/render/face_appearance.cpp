@@ -16,7 +16,7 @@ using Point = std::array<float, 3>;
 constexpr Point skin_colour{ { 0.87F, 0.66F, 0.55F } }, lip_colour{ { 0.74F, 0.39F, 0.37F } },
     tongue_colour{ { 0.69F, 0.37F, 0.36F } }, brow_colour{ { 0.25F, 0.17F, 0.12F } },
     hair_colour{ { 0.29F, 0.20F, 0.145F } }, corner_colour{ { 0.60F, 0.40F, 0.36F } },
-    white_colour{ { 0.90F, 0.88F, 0.85F } };
+    white_colour{ { 0.90F, 0.88F, 0.85F } }, metal_colour{ { 0.52F, 0.55F, 0.59F } };
 // Lashes cover the edges of the lids, which are parabolas as seen from the front. Lengths are divided by the eyeball's
 // radius.
 struct Lashes
@@ -79,6 +79,9 @@ std::uint8_t label_of_landmark(const std::string& landmark)
                   { return std::count(part.landmarks.begin(), part.landmarks.end(), landmark) > 0; });
 }
 
+// whether a shown surface is the core of a robot, which looks like metal
+bool is_core(const std::string& name) { return name.compare(0, 4, "core") == 0; }
+
 Point blend(const Point& a, const Point& b, double share)
 {
   const auto s = static_cast<float>(share);
@@ -98,10 +101,15 @@ std::vector<std::string> label_names()
 BodyAppearance body_appearance(const std::string& name, bool only_shown, const TriangleMesh& surface)
 {
   const bool is_hair = only_shown && name == "hair", is_tongue = only_shown && name == "tongue";
-  const bool is_skin = only_shown && !is_hair && !is_tongue;
+  const bool is_metal = only_shown && is_core(name);
+  const bool is_skin = only_shown && !is_hair && !is_tongue && !is_metal;
   BodyAppearance look;
   look.label = is_hair ? label_of_part(name) : static_cast<std::uint8_t>(is_skin ? skin_label : body_label);
-  look.colour = is_hair ? hair_colour : is_tongue ? tongue_colour : is_skin ? skin_colour : teeth_colour;
+  look.colour = is_hair     ? hair_colour
+                : is_tongue ? tongue_colour
+                : is_metal  ? metal_colour
+                : is_skin   ? skin_colour
+                            : teeth_colour;
   look.colours.assign(surface.vertices.size(), look.colour);
   if (!is_hair)
     return look;
@@ -310,6 +318,9 @@ FaceAppearance::FaceAppearance(const Model& model, const SkinState& rest)
   const std::vector<Eyeball> eyes = eyeballs(model, [](std::size_t) { return RigidTransform(); });
   for (const BodyShape& body : body_shapes(model))
   {
+    // The ball that stands for the inside of a mouth would be seen below a mask on a robot's core.
+    if (is_core(body.name))
+      appearance_.mouth.reset();
     const auto is_ball = [&](const Eyeball& eye) { return static_cast<std::int32_t>(eye.bone) == body.bone; };
     if (!std::any_of(eyes.begin(), eyes.end(), is_ball))
       bodies_.push_back({ body_at_rest(model, body), body.bone });

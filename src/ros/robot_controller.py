@@ -2,19 +2,36 @@
 """Moves the joints of a robot face (doc/robots.md): trajectories in, joint states with efforts out.
 
 It takes the place of a real robot's controller and has the topics of ros_control's joint trajectory controller. Joints follow a
-trajectory at most as fast as the URDF allows. The effort of a joint is the force or torque that its anchor needs against the skin,
-along the joint's axis: the opposite of ~wrench/ANCHOR of the face.
+trajectory at most as fast as the URDF allows. The effort of a joint is the force along its axis, or the torque about it, that
+holds all links behind the joint against the skin. The skin's wrench on a link is ~wrench/LINK of the face.
 """
 
 import threading
 import xml.etree.ElementTree as xml
 
 import rospy
+import tf2_ros
 from geometry_msgs.msg import WrenchStamped
 from sensor_msgs.msg import JointState
-from trajectory_msgs.msg import JointTrajectory
+from std_msgs.msg import String
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 MOVING = ("prismatic", "revolute", "continuous")
+
+
+def dot(a, b):
+    return sum(x * y for x, y in zip(a, b))
+
+
+def cross(a, b):
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+
+
+def turned(q, v):
+    """A vector turned by a quaternion."""
+    u = (q.x, q.y, q.z)
+    once = cross(u, v)
+    return [x + 2 * (q.w * y + z) for x, y, z in zip(v, once, cross(u, once))]
 
 
 class Joint:
@@ -25,7 +42,8 @@ class Joint:
         self.axis = [float(x) for x in element.find("axis").get("xyz").split()]
         self.turns = element.get("type") != "prismatic"
         self.lower, self.upper, self.velocity = (float(limit.get(key)) for key in ("lower", "upper", "velocity"))
-        self.position = self.speed = self.effort = 0.0
+        self.position = self.speed = 0.0
+        self.efforts = {}  # by link behind the joint: what holds the link against the skin
         self.times, self.goals = [], []  # knots of the joint's trajectory; none: it stays
 
     def wanted(self, now):
@@ -47,22 +65,40 @@ class Controller:
         robot = xml.fromstring(rospy.get_param("robot_description"))
         self.joints = [Joint(joint) for joint in robot.iter("joint") if joint.get("type") in MOVING]
         self.by_name = {joint.name: joint for joint in self.joints}
-        # the anchor of a joint is the link at the end of its chain
-        next_link = {joint.find("parent").get("link"): joint.find("child").get("link") for joint in robot.iter("joint")}
         self.mutex = threading.Lock()
         self.states = rospy.Publisher("joint_states", JointState, queue_size=1)
         face = rospy.get_param("~face", "face")
-        for joint in self.joints:
-            anchor = joint.child
-            while anchor in next_link:
-                anchor = next_link[anchor]
-            rospy.Subscriber("%s/wrench/%s" % (face, anchor), WrenchStamped, self.take_wrench, joint, queue_size=1)
+        self.poses = {"neutral": {}, **rospy.get_param("~poses", {})}
+        self.pose_time = rospy.Duration(rospy.get_param("~pose_time", 0.5))
+        self.frames = tf2_ros.Buffer()
+        self.listener = tf2_ros.TransformListener(self.frames)
+        parents = {joint.find("child").get("link"): joint.find("parent").get("link") for joint in robot.iter("joint")}
+        for link in parents:
+            behind, end = [], link
+            while link:
+                behind += [joint for joint in self.joints if joint.child == link]
+                link = parents.get(link)
+            for joint in behind:
+                joint.efforts[end] = 0.0
+            if behind:
+                rospy.Subscriber("%s/wrench/%s" % (face, end), WrenchStamped, self.take_wrench, (end, behind), queue_size=1)
         rospy.Subscriber("~command", JointTrajectory, self.take_trajectory, queue_size=10)
+        rospy.Subscriber("~pose", String, self.take_pose, queue_size=10)
 
-    def take_wrench(self, message, joint):
-        # the anchor's frame is parallel to the face frame and the joints' frames
-        vector = message.wrench.torque if joint.turns else message.wrench.force
-        joint.effort = -sum(a * b for a, b in zip(joint.axis, (vector.x, vector.y, vector.z)))
+    def take_wrench(self, message, target):
+        """Keeps what each joint before a link must hold of the skin's wrench on the link."""
+        link, joints = target
+        force, torque = ((v.x, v.y, v.z) for v in (message.wrench.force, message.wrench.torque))
+        for joint in joints:
+            try:
+                place = self.frames.lookup_transform(joint.child, message.header.frame_id, rospy.Time(0)).transform
+            except tf2_ros.TransformException:
+                continue  # frames of the face come with its first skin
+            pull = turned(place.rotation, force)
+            if joint.turns:
+                arm = (place.translation.x, place.translation.y, place.translation.z)
+                pull = [a + b for a, b in zip(turned(place.rotation, torque), cross(arm, pull))]
+            joint.efforts[link] = -dot(joint.axis, pull)
 
     def fault(self, message):
         for name in message.joint_names:
@@ -95,11 +131,29 @@ class Controller:
                 joint.times = [begin] + [begin + point.time_from_start.to_sec() for point in message.points]
                 joint.goals = [joint.position] + [point.positions[index] for point in message.points]
 
+    def take_pose(self, message):
+        if message.data not in self.poses:
+            rospy.logwarn("there is no pose '%s'; the poses are %s" % (message.data, ", ".join(self.poses)))
+            return
+        goals = {**{name: 0.0 for name in self.by_name}, **self.poses[message.data]}
+        point = JointTrajectoryPoint(positions=list(goals.values()), time_from_start=self.pose_time)
+        self.take_trajectory(JointTrajectory(joint_names=list(goals), points=[point]))
+
+    def play_demo(self, now):
+        """Moves to the next pose every two seconds."""
+        index = int(now / 2)
+        if self.poses and index != self.demo_index:
+            self.demo_index = index
+            self.take_pose(String(sorted(self.poses)[index % len(self.poses)]))
+
     def run(self):
+        demo, self.demo_index = rospy.get_param("~demo", False), -1
         rate = rospy.Rate(rospy.get_param("~rate", 50))
         before = rospy.Time.now()
         while not rospy.is_shutdown():
             now = rospy.Time.now()
+            if demo:
+                self.play_demo(now.to_sec())
             with self.mutex:
                 if now > before:
                     for joint in self.joints:
@@ -109,7 +163,7 @@ class Controller:
                     name=[joint.name for joint in self.joints],
                     position=[joint.position for joint in self.joints],
                     velocity=[joint.speed for joint in self.joints],
-                    effort=[joint.effort for joint in self.joints],
+                    effort=[sum(joint.efforts.values()) for joint in self.joints],
                 )
             message.header.stamp = now
             self.states.publish(message)

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
 """Takes pictures of a scene's face: at rest, in each of its expressions, and relaxed again; or at moments of its demo.
+A robot's poses take the place of expressions (facial_robot).
 
 usage: take_pictures.py SCENE FOLDER [at:=SECONDS,SECONDS,...] [panel:=true] [displays:=NAME,NAME,...]
                         [LAUNCH_ARGUMENT:=VALUE ...]
@@ -117,6 +118,8 @@ class Face:
         from frontalis.msg import Expression, SimulationState
         from frontalis.srv import ListMuscles, Step
         from geometry_msgs.msg import PoseArray
+        from sensor_msgs.msg import JointState
+        from std_msgs.msg import String
         from visualization_msgs.msg import Marker
 
         rospy.init_node("take_pictures", disable_signals=True)
@@ -124,11 +127,15 @@ class Face:
         self.landmarks = None
         self.state = None
         self.caption = ""
+        self.poses = lambda: rospy.get_param("/robot_controller/poses", {})
+        self.joints = {}
+        self.pose = rospy.Publisher("/robot_controller/pose", String, queue_size=1)
         self.expression = rospy.Publisher("/face/expression", Expression, queue_size=1)
         self.muscles = rospy.ServiceProxy("/face/list_muscles", ListMuscles)
         self.advance = rospy.ServiceProxy("/face/step", Step)
         rospy.Subscriber("/face/landmarks", PoseArray, lambda message: setattr(self, "landmarks", message.poses))
         rospy.Subscriber("/face/state", SimulationState, lambda message: setattr(self, "state", message))
+        rospy.Subscriber("/joint_states", JointState, lambda message: setattr(self, "joints", message))
         rospy.Subscriber("/face/caption", Marker, lambda message: setattr(self, "caption", message.text))
 
     def is_seen(self):
@@ -140,14 +147,27 @@ class Face:
     def express(self, name):
         """Commands an expression and steps until the face holds it. Returns the simulated time [s]."""
         # topics and services are not ordered: go on only after the command has arrived
-        self.command("relax", lambda target: not any(target))
-        if name != "relax":
-            self.command(name, any)
+        if self.poses():
+            self.strike(name)
+        else:
+            self.command("relax", lambda target: not any(target))
+            if name != "relax":
+                self.command(name, any)
         for seconds in (RAMP, HOLD):
             answer = self.advance(seconds)
             if not answer.success:
                 fail("the simulation failed in '%s': %s" % (name, answer.message))
         return answer.time
+
+    def strike(self, name):
+        """Moves a robot's joints to a pose and waits until they are there; joints that it does not name go to 0."""
+        goals = self.poses().get(name, {})
+        for _ in range(100):
+            self.pose.publish(name)
+            time.sleep(1)
+            if all(position == goals.get(joint, 0) for joint, position in zip(self.joints.name, self.joints.position)):
+                return
+        fail("the joints did not reach the pose '%s'" % name)
 
     def command(self, name, arrived):
         for _ in range(100):
@@ -213,10 +233,13 @@ def take(folder, launch, moments):
     if moments:
         take_demo(face, folder, moments)
         return
-    names = [name for name in face.muscles().expressions if name != "relax"]
+    at_rest = ("relax", "neutral")
+    names = [name for name in face.poses() or face.muscles().expressions if name not in at_rest]
     picture = None
-    for title, expression in [("neutral", None)] + [(name, name) for name in names] + [("relaxed", "relax")]:
-        moment = face.express(expression) if expression else 0
+    for title, expression in [("neutral", None)] + [(name, name) for name in names] + [
+        ("relaxed", at_rest[1] if face.poses() else at_rest[0])
+    ]:
+        moment = face.express(expression or title) if expression or face.poses() else 0
         picture = settled_picture(picture)
         path = os.path.join(folder, title + ".png")
         save(picture, path)

@@ -31,7 +31,7 @@ const std::vector<std::string> coarse{ "--voxel", "6" };
 // A robot whose skin is 10 % stiffer than its scene says, and whose actuators move 10 % too far or too little.
 constexpr double stiffness = 1.1;
 constexpr std::array<double, 6> gains{ { 1.1, 0.9, 1.1, 0.9, 1.1, 0.9 } };
-// limits of the joints in config/facial_robot.urdf [m], and the motion of their anchors: bone, axis, sign
+// limits of the joints [m], and the motion of their anchors: bone, axis, sign
 struct Joint
 {
   std::string name, bone;
@@ -61,7 +61,7 @@ protected:
   // the robot's motor babbling: tables of joints and of landmarks
   void record()
   {
-    std::string scene = text_of(directory + "/config/facial_robot.yaml");
+    std::string scene = text_of(directory + "/test/cli/robot_brow.yaml");
     scene.replace(scene.find("young: 69 kPa"), 13, fmt::format("young: {} kPa", 69 * stiffness));
     const auto robot =
         std::make_shared<const Model>(read_model(bake(folder.write("robot.yaml", scene), "robot.vtkhdf")));
@@ -120,8 +120,8 @@ protected:
 TEST_F(Calibrate, finds_gains_and_modulus_of_a_robots_face)
 {
   ASSERT_NO_FATAL_FAILURE(record());
-  const auto result = calibrate(bake(directory + "/config/facial_robot.yaml", "scene.vtkhdf"),
-                                directory + "/config/facial_robot_actuators.yaml");
+  const auto result = calibrate(bake(directory + "/test/cli/robot_brow.yaml", "scene.vtkhdf"),
+                                directory + "/test/cli/robot_brow_actuators.yaml");
   ASSERT_EQ(result.code, 0) << result.errors;
   const std::string text = text_of(folder / "found.yaml");
   const auto found = [&](const std::string& key)
@@ -144,7 +144,7 @@ TEST_F(Calibrate, finds_gains_and_modulus_of_a_robots_face)
 
 TEST_F(Calibrate, names_what_does_not_fit)
 {
-  const std::string model = bake(directory + "/config/facial_robot.yaml", "scene.vtkhdf");
+  const std::string model = bake(directory + "/test/cli/robot_brow.yaml", "scene.vtkhdf");
   folder.write("landmarks.csv", "time_s,landmark,forward_mm,left_mm,up_mm\n0,glabella,0,0,1\n");
   const auto refused = [&](const std::string& track, const std::string& actuators, const std::string& why)
   {

@@ -281,7 +281,7 @@ TEST(FaceAppearance, LashesAreAlongTheEdgesOfTheLids)
   EXPECT_EQ(colours[3], bare[3]);
 }
 
-TEST(FaceAppearance, BodiesHaveTheColourOfTeethSkinHairOrTongue)
+TEST(FaceAppearance, BodiesHaveTheColourOfTeethSkinHairTongueOrMetal)
 {
   const TriangleMesh none;
   const auto teeth = body_appearance("hair", false, none), skin = body_appearance("head", true, none),
@@ -291,6 +291,10 @@ TEST(FaceAppearance, BodiesHaveTheColourOfTeethSkinHairOrTongue)
   EXPECT_EQ(label_names().at(hair.label), "hair");
   EXPECT_EQ(tongue.label, body_label);
   EXPECT_LT(tongue.colour[1], 0.6F * tongue.colour[0]);
+  const auto core = body_appearance("core_jaw", true, none);
+  EXPECT_EQ(core.label, body_label);
+  EXPECT_GT(core.colour[2], core.colour[0]);  // bluish, as metal is
+  EXPECT_EQ(body_appearance("core_jaw", false, none).colour, teeth.colour);
   EXPECT_EQ(skin.colour, skin_appearance({}, {}, { { 0, 0, 0 } }).colours[0]);
   // hair is thin at the border of its surface, and dense where that is far away
   TriangleMesh fan;

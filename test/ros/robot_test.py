@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A robot face: joints follow a trajectory, anchors follow joints, skin follows anchors, and joints report efforts."""
+"""A robot face: joints follow trajectories and poses, anchors follow joints, skin follows anchors, and joints report efforts."""
 
 import unittest
 
@@ -7,30 +7,48 @@ import rospy
 import rostest
 from geometry_msgs.msg import WrenchStamped
 from sensor_msgs.msg import JointState
+from std_msgs.msg import String
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from face import Face, wait
 
-JOINT = "outer_left_lift"
+BROW, BROW_ANCHOR = "inner_brow_left_lift", "anchor_inner_brow_left"
 LIFT = 0.006  # [m]
+OPENING = 0.1  # [rad] of the jaw
+LIP_FROM_HINGE = (0.087, 0.0, -0.052)  # the lower lip's anchor in the frame of the jaw [m], as config/facial_robot.urdf says
 
 
 class Robot(unittest.TestCase):
-    def setUp(self):
-        self.face = Face()
-        self.joints, self.forces = {}, []
-        rospy.Subscriber("joint_states", JointState, self.take_joints)
-        rospy.Subscriber("/face/wrench/anchor_outer_left", WrenchStamped, self.take_wrench)
+    @classmethod
+    def setUpClass(cls):
+        cls.face = Face()
+        cls.joints, cls.wrenches = {}, {}
+        rospy.Subscriber("joint_states", JointState, cls.take_joints)
+        for bone in (BROW_ANCHOR, "anchor_lower_lip", "jaw"):
+            rospy.Subscriber("/face/wrench/" + bone, WrenchStamped, cls.take_wrench, bone)
         # A queue of one would drop the first of two messages in a row if the machine is slow.
-        self.command = rospy.Publisher("/robot_controller/command", JointTrajectory, queue_size=10)
-        self.face.wait_until_ready()
-        wait(self.command.get_num_connections, "the controller")
+        cls.command = rospy.Publisher("/robot_controller/command", JointTrajectory, queue_size=10)
+        cls.pose = rospy.Publisher("/robot_controller/pose", String, queue_size=10)
+        cls.face.wait_until_ready()
+        wait(lambda: cls.command.get_num_connections() and cls.pose.get_num_connections(), "the controller")
+        cls.rest = {name: cls.place(name) for name in cls.face.state.landmark}
 
-    def take_joints(self, message):
-        self.joints = {name: values for name, *values in zip(message.name, message.position, message.effort)}
+    @classmethod
+    def take_joints(cls, message):
+        cls.joints = {name: values for name, *values in zip(message.name, message.position, message.effort)}
 
-    def take_wrench(self, message):
-        self.forces.append(message)
+    @classmethod
+    def take_wrench(cls, message, bone):
+        cls.wrenches[bone] = message
+
+    @classmethod
+    def place(cls, landmark):
+        position = cls.face.landmarks.poses[cls.face.state.landmark.index(landmark)].position
+        return position.x, position.y, position.z
+
+    def moved(self, landmark, axis):
+        """How far a landmark has moved from rest [m] along an axis: 0 forward, 1 left, 2 up."""
+        return self.place(landmark)[axis] - self.rest[landmark][axis]
 
     def send(self, joint, position, seconds=0.1):
         point = JointTrajectoryPoint(positions=[position], time_from_start=rospy.Duration(seconds))
@@ -45,33 +63,58 @@ class Robot(unittest.TestCase):
 
         wait(holds, what)
 
-    def brow(self):
-        return self.face.height("brow_left")
+    def wait_for_effort(self, joint, wanted):
+        wait(lambda: abs(self.joints[joint][1] - wanted()) < 1e-6, "the effort of " + joint)
+
+    def tearDown(self):
+        self.pose.publish("neutral")
+        wait(lambda: not any(position for position, _ in self.joints.values()), "joints at rest")
+        self.step_until(lambda: all(abs(self.moved(name, 2)) < 3e-4 for name in self.rest), "the face at rest")
 
     def test_moves_and_feels_its_skin(self):
-        rest = self.brow()
-        self.send(JOINT, LIFT)
-        wait(lambda: self.joints.get(JOINT, [0])[0] == LIFT, "the joint")
-        self.step_until(lambda: self.brow() - rest > 0.8 * LIFT, "the brow")
-        self.assertLess(self.brow() - rest, 1.1 * LIFT)
+        self.send(BROW, LIFT)
+        wait(lambda: self.joints.get(BROW, [0])[0] == LIFT, "the joint")
+        self.step_until(lambda: self.moved("brow_medial_left", 2) > 0.8 * LIFT, "the brow")
+        self.assertLess(self.moved("brow_medial_left", 2), 1.1 * LIFT)
         # the skin pulls the anchor down, and the joint pulls it up
-        self.step_until(lambda: self.forces and self.forces[-1].wrench.force.z < -0.01, "the wrench")
-        latest = lambda: abs(self.joints[JOINT][1] + self.forces[-1].wrench.force.z) < 1e-9
-        wait(latest, "the effort of the joint")
-        self.assertEqual(self.forces[-1].header.frame_id, "face_robot/bone/anchor_outer_left")
-        self.assertGreater(self.joints[JOINT][1], 0)
+        down = lambda: self.wrenches[BROW_ANCHOR].wrench.force.z
+        self.step_until(lambda: BROW_ANCHOR in self.wrenches and down() < -0.01, "the wrench")
+        self.wait_for_effort(BROW, lambda: -down())
+        self.assertEqual(self.wrenches[BROW_ANCHOR].header.frame_id, "face_robot/bone/" + BROW_ANCHOR)
 
         # trajectories with faults move nothing
-        for joint, position in (("nose", 0), (JOINT, 0.1), (JOINT, float("nan"))):
+        for joint, position in (("nose", 0), (BROW, 0.1), (BROW, float("nan"))):
             self.send(joint, position)
-        self.send("inner_left_knit", 0.001)
-        wait(lambda: self.joints["inner_left_knit"][0] == 0.001, "a good trajectory after bad ones")
-        self.assertEqual(self.joints[JOINT][0], LIFT)
+        self.send("upper_lip_lift", 0.001)
+        wait(lambda: self.joints["upper_lip_lift"][0] == 0.001, "a good trajectory after bad ones")
+        self.assertEqual(self.joints[BROW][0], LIFT)
 
-        # the joints return to rest
-        self.send(JOINT, 0)
-        self.send("inner_left_knit", 0)
-        self.step_until(lambda: abs(self.brow() - rest) < 2e-4, "the brow at rest")
+    def test_jaw_turns_and_carries_the_lower_lip(self):
+        self.send("jaw_open", OPENING)
+        wait(lambda: self.joints.get("jaw_open", [0])[0] == OPENING, "the jaw")
+        # about the hinge, by the angle times the horizontal distance
+        felt = lambda: {"jaw", "anchor_lower_lip"} <= set(self.wrenches)
+        self.step_until(lambda: self.moved("chin", 2) < -0.07 * OPENING and felt(), "the chin")
+        self.assertLess(self.moved("lower_lip", 2), -0.07 * OPENING)
+
+        def torque():
+            # the frame of the jaw has its origin on the hinge, and turns with it, as that of the lip does
+            jaw, lip = (self.wrenches[bone].wrench for bone in ("jaw", "anchor_lower_lip"))
+            arm = LIP_FROM_HINGE[2] * lip.force.x - LIP_FROM_HINGE[0] * lip.force.z
+            return -(jaw.torque.y + lip.torque.y + arm)
+
+        self.wait_for_effort("jaw_open", torque)
+        self.assertGreater(self.joints["jaw_open"][1], 0.001)  # the skin closes the jaw
+
+    def test_takes_poses_by_name(self):
+        self.pose.publish("a pose that there is not")
+        self.pose.publish("smile")
+        wait(lambda: self.joints["mouth_corner_left_lift"][0] == 0.008, "the smile")
+        # Voxels of 6 mm join the lips, so that the corners follow their anchors by little more than half.
+        self.step_until(lambda: self.moved("mouth_corner_left", 2) > 0.004, "the corner of the mouth")
+        for side, sign in (("left", 1), ("right", -1)):
+            self.assertGreater(sign * self.moved("mouth_corner_" + side, 1), 0.0035)
+            self.assertGreater(self.moved("mouth_corner_" + side, 2), 0.004)
 
 
 if __name__ == "__main__":

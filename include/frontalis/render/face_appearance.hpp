@@ -15,8 +15,8 @@ namespace frontalis
 constexpr std::array<float, 3> teeth_colour{ { 0.93F, 0.91F, 0.84F } };
 
 /// Colours of a body's vertices, and its label. A body that tissue touches looks like teeth. A body that is only shown
-/// looks like skin, or like what its name says if that is "hair" or "tongue". Hair gets thinner towards the open border
-/// of its surface.
+/// looks like skin, or like what its name says if that is "hair" or "tongue", or like metal if its name begins with
+/// "core". Hair gets thinner towards the open border of its surface.
 struct BodyAppearance
 {
   std::uint8_t label = 0;
