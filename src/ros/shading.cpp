@@ -36,6 +36,26 @@ constexpr float gamma = 2.2f;            // of displays
 constexpr int smoothing_passes = 3;      // means over neighbours that hide the kinks of a bound skin at faces of voxels
 constexpr float hollow_depth = 5.0e-3f;  // fraction of light that a hollow loses, per mean curvature [m]
 
+/// The share of a display's full signal that shows a fraction of its light, from 0 to 1. The power of 1 / gamma takes
+/// as long as all else of a colour; it comes from a table over the square root, of which it is nearly linear.
+float display_value(float light)
+{
+  constexpr std::size_t parts = 256;
+  static const auto table = []
+  {
+    std::array<float, parts + 2> values{};
+    for (std::size_t i = 0; i < values.size(); ++i)
+    {
+      const float root = static_cast<float>(i) / static_cast<float>(parts);
+      values[i] = std::pow(root * root, 1 / gamma);
+    }
+    return values;
+  }();
+  const float at = static_cast<float>(parts) * std::sqrt(light);
+  const auto entry = static_cast<std::size_t>(at);
+  return table[entry] + (at - static_cast<float>(entry)) * (table[entry + 1] - table[entry]);
+}
+
 }  // namespace
 
 std::array<float, 3> false_colour(float value)
@@ -119,15 +139,17 @@ void SkinShading::colours(const SkinState& skin, const std::vector<float>& value
     const float openness = std::clamp(1 - hollow_depth * curvature[vertex], 0.45f, 1.12f);
 
     const float key = dot(normal, key_light), fill = dot(normal, fill_light), sky = 0.5f + 0.5f * normal[2];
-    const float highlight = 0.10f * std::pow(std::max(0.0f, dot(normal, half_way)), 22.0f);
-    const float rim = 0.10f * std::pow(1 - std::clamp(dot(normal, view), 0.0f, 1.0f), 3.0f);
+    const float shine = std::max(0.0f, dot(normal, half_way)), shine_2 = shine * shine, shine_4 = shine_2 * shine_2;
+    const float highlight = 0.10f * shine_2 * shine_4 * shine_4 * shine_4 * shine_4 * shine_4;
+    const float turned = 1 - std::clamp(dot(normal, view), 0.0f, 1.0f), rim = 0.10f * turned * turned * turned;
     const Vector surface = values.empty() ? albedo_[vertex] : false_colour(values[vertex]);
     for (int channel = 0; channel < 3; ++channel)
     {
       const float light = key_colour[channel] * wrapped(key, wrap[channel]) +
                           fill_colour[channel] * wrapped(fill, wrap[channel]) + sky_colour[channel] * sky;
       const float linear = openness * (surface[channel] * light + highlight + rim * sky_colour[channel]);
-      out[vertex][channel] = std::pow(std::clamp(linear, 0.0f, 1.0f), 1 / gamma);
+      // This order of the arguments makes 0 of a value that is no number.
+      out[vertex][channel] = display_value(std::min(1.0f, std::max(0.0f, linear)));
     }
   }
 }

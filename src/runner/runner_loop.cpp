@@ -16,8 +16,6 @@ namespace
 // Time steps per slice. There are few enough that requests do not wait long, and enough that reading the clock and
 // locking the mutex once per slice cost little.
 constexpr int steps_per_slice = 16;
-// Slices per frame at the least, so that a face that steps slowly does not spend its time on frames.
-constexpr int least_slices = 2;
 // Wall time after a frame before progress is told: somewhat less than a fiftieth of a second.
 constexpr std::chrono::milliseconds progress_period(18);
 // Wall time between two computations of the energies and volume ratios.
@@ -181,14 +179,9 @@ void Runner::Implementation::run_frame()
                          ? time() + 1e9
                          : time() + clock.behind(Clock::now(), time(), 2 * period()) + period();
   bool has_told = false;
-  for (int slices = 0; !frame.failed && time() < end && (slices < least_slices || Clock::now() < deadline); ++slices)
+  // A frame has one slice at the least, so that a face that steps slowly is still seen to move.
+  for (bool is_first = true; !frame.failed && time() < end && (is_first || Clock::now() < deadline); is_first = false)
   {
-    if (slices > 0 && settings.on_progress && Clock::now() - last_told > progress_period)
-    {
-      note_progress();
-      settings.on_progress(frame);
-      has_told = true;
-    }
     const double seconds = std::min(end - time(), slice());
     Controls controls;
     {
@@ -205,6 +198,12 @@ void Runner::Implementation::run_frame()
       controls = controls_after(seconds);
     }
     advance(seconds, controls);
+    if (!frame.failed && settings.on_progress && Clock::now() - last_told > progress_period)
+    {
+      note_progress();
+      settings.on_progress(frame);
+      has_told = true;
+    }
   }
   publish();
   std::unique_lock<std::mutex> lock(mutex);

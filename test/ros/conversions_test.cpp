@@ -383,5 +383,25 @@ TEST(Shading, LightComesFromAboveAndHollowsAreDarker)
   EXPECT_GT(up[middle][1], down[middle][1]);
 }
 
+// What a flat skin reflects is the light that falls on it, times its albedo, plus the same highlight everywhere.
+TEST(Shading, ColoursFollowTheGammaOfDisplays)
+{
+  constexpr float gamma = 2.2F;
+  TriangleMesh mesh;
+  mesh.vertices.resize(3);
+  const SkinColours natural = { { { 0.1F, 0.1F, 0.1F } }, { { 0.35F, 0.35F, 0.35F } }, { { 0.7F, 0.7F, 0.7F } } };
+  SkinState skin;
+  skin.vertices.resize(3);
+  skin.normals.assign(3, { { 1, 0, 0 } });
+  SkinColours colours;
+  SkinShading(mesh, natural).colours(skin, {}, colours);
+  const auto ratio = [](const SkinColours& of)
+  {
+    const auto light = [&](std::size_t vertex) { return std::pow(of[vertex][0], gamma); };
+    return (light(2) - light(0)) / (light(1) - light(0));
+  };
+  EXPECT_NEAR(ratio(colours), ratio(natural), 1e-2 * ratio(natural));
+}
+
 }  // namespace
 }  // namespace frontalis

@@ -48,7 +48,7 @@ def measure(launch):
     elapsed = time.monotonic() - begin
     rates = {topic: (counts[topic] - before[topic]) / elapsed for topic in TOPICS}
     state = states[-1]
-    print("%s; %d voxels, skin of %d vertices; real-time factor %.2f; load of the machine %.1f on %d cores"
+    print("%s; %d voxels, skin of %d vertices; real-time factor %.3f; load of the machine %.1f on %d cores"
           % (state.backend, state.voxels, state.skin_vertices, state.real_time_factor, os.getloadavg()[0], os.cpu_count()))
     for topic, rate in rates.items():
         print("~%-12s %5.1f per second" % (topic, rate))

@@ -65,10 +65,11 @@ class Node:
 
 
 def call_in_vain(service, *arguments):
-    """Calls a service that does not answer, in a thread of its own."""
+    """Calls a service that does not answer, in a thread of its own; again if the call is refused, as while a step is under way."""
     def call():
         try:
-            service(*arguments)
+            while not service(*arguments).success:
+                pass
         except rospy.ServiceException:
             pass  # the node has ended
 
