@@ -38,8 +38,8 @@ StepArguments CudaSolver::arguments(double dt, bool idle_parts) const
   return g;
 }
 
-// Copies to the device, in one transfer from page-locked memory: a zero frequency bound, the motion of bodies that
-// tissue may touch, the activations, the poses, and the relaxation times of viscous stresses. `relaxation` is empty if
+// Copies to the device, in one transfer from page-locked memory: a zero frequency bound, the motion of bones and of
+// bodies that tissue may touch, the activations, and the relaxation times of viscous stresses. `relaxation` is empty if
 // launches do not relax stresses.
 void CudaSolver::stage(const StepPlan& plan, const std::vector<float>& relaxation, PlanSlot& slot, StepArguments& g)
 {

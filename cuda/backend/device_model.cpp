@@ -51,7 +51,8 @@ std::vector<std::uint32_t> added_voxels(const Model& model, const Discretisation
 // memory.
 void expect_room(const Model& model, const Discretisation& discretisation, const VoxelCut& cut)
 {
-  const std::size_t node_bytes = 2 * sizeof(float4) + 3 * sizeof(float);
+  const bool searches = model.time_step_estimate == TimeStepEstimate::assembled;
+  const std::size_t node_bytes = (searches ? 8 : 2) * sizeof(float4) + 3 * sizeof(float);
   std::size_t wanted =
       (model.nodes.size() + 1) * node_bytes + model.fibre_muscle.size() * (sizeof(float4) + sizeof(std::uint32_t));
   if (cut.patches)

@@ -63,7 +63,7 @@ std::optional<double> CudaSolver::highest_frequency_squared()
   LanczosMatrix matrix;
   std::vector<double2> sizes;
   std::vector<double> along;
-  for (int i = 0; i < lanczos_iterations && !matrix.settled();)
+  for (int i = 0; i < most_lanczos_iterations && !matrix.settled();)
   {
     for (const int end = i + series; i < end; ++i)
     {
@@ -80,7 +80,7 @@ std::optional<double> CudaSolver::highest_frequency_squared()
     synchronise();
     s.sizes.download(sizes);
     s.along.download(along);
-    for (int row = static_cast<int>(matrix.rows()); row < i; ++row)
+    for (int row = static_cast<int>(matrix.rows()); row < i && !matrix.settled(); ++row)
     {
       const auto length = [&](int vector)
       {

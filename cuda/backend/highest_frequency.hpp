@@ -23,8 +23,8 @@ struct CudaSolver::FrequencySearch
         moved(nodes),
         forces(nodes),
         present(nodes),
-        sizes((lanczos_iterations + 1) * lanczos_blocks),
-        along(lanczos_iterations * lanczos_blocks)
+        sizes((most_lanczos_iterations + 1) * lanczos_blocks),
+        along(most_lanczos_iterations * lanczos_blocks)
   {
     for (const auto* field : { &forces, &present })
       require(cudaMemset(field->data(), 0, field->bytes()), "clearing forces");

@@ -42,8 +42,8 @@ protected:
   }
 };
 
-/// Pose of a bone after a step, with the origin of the scene as `middle`, and its motion in the step: the tissue at a
-/// place p in the bone's frame has the velocity spin * p + drift.
+/// Pose of a bone after a step, with the origin of the coordinates as `middle`, and its motion in the step: the point
+/// of the bone at p in the bone's frame has the velocity spin * p + drift.
 struct BoneMotion : BodyPose
 {
   physics::Vec3<float> spin[3];  ///< rows [1/s]

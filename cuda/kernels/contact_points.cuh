@@ -51,7 +51,7 @@ __device__ __forceinline__ bool distance_at(const ContactArguments& c, std::uint
                        [&](std::uint32_t code) { return aside(enter_contact_cell)(c, index, code); });
 }
 
-/// A point's position in the frame of a bone, in double precision.
+/// A point's position relative to the origin of a bone's frame [m].
 __device__ __forceinline__ physics::Vec3<double> from_bone(const StepArguments& g, int step, const ContactBody& body,
                                                            const ContactPoint& point, const physics::Vec3<float>& moved)
 {

@@ -174,7 +174,7 @@ struct StepArguments : physics::Kick<float>
   const float* friction;  ///< Coulomb's coefficient of the first `rubbing_count` nodes
   float* pressing;        ///< reaction per mass of these nodes, with the delay of friction [m/s2]
   std::uint32_t rubbing_count;
-  /// of nodes on surfaces that move: rest position [m], bits of the bone; null if there are none
+  /// of each sliding node: rest position [m], bits of the bone, -1 on a surface that stands still; null if none moves
   const float4* gliding;
   const PrescribedMotion* prescribed;
   const float4* rigid;  ///< of nodes that move with a bone: rest position [m], bits of the bone

@@ -69,7 +69,7 @@ public:
   OneNode(const OneNode&) = delete;
   OneNode& operator=(const OneNode&) = delete;
 
-  // Lets the bone turn about the z axis [rad/s].
+  // Lets the bone turn about the z axis, and shift [rad/s].
   void turn(double rate)
   {
     rate_ = rate;
@@ -97,9 +97,14 @@ public:
   double off_level(int number) const
   {
     const Place at{ { rest[0] + state.u[0], rest[1] + state.u[1], rest[2] + state.u[2] } };
-    const auto& r = pose(number).rotation;
-    const auto inwards = [&](std::size_t column)
-    { return r[column] * at[0] + r[column + 3] * at[1] + r[column + 6] * at[2]; };
+    const RigidTransform bone = pose(number);
+    const auto inwards = [&](std::size_t axis)
+    {
+      double sum = 0;
+      for (std::size_t i = 0; i < 3; ++i)
+        sum += bone.rotation[3 * i + axis] * (at[i] - bone.translation[i]);
+      return sum;
+    };
     const physics::Vec3<double> p{ inwards(0), inwards(1), inwards(2) };
     const double start = std::hypot(rest[0] - centre[0], rest[1] - centre[1], rest[2] - centre[2]);
     return std::hypot(p.x - centre[0], p.y - centre[1], p.z - centre[2]) - start;
@@ -111,7 +116,7 @@ private:
   RigidTransform pose(int step) const
   {
     const double c = std::cos(rate_ * step * dt), s = std::sin(rate_ * step * dt);
-    return { { { c, -s, 0, s, c, 0, 0, 0, 1 } }, { { 0, 0, 0 } } };
+    return { { { c, -s, 0, s, c, 0, 0, 0, 1 } }, { { 0.02 * rate_ * step * dt, 0, -0.05 * rate_ * step * dt } } };
   }
 
   bool glides_;

@@ -58,7 +58,9 @@ void check_patches(const Model& model, const PatchSettings& settings, const Boun
     for (std::uint32_t v = 0; v < patch.voxels; ++v)
     {
       const std::uint32_t e = patches.voxel[patch.voxel_begin + v];
-      ASSERT_EQ(v < patch.special, model.fibre_begin[e] < model.fibre_begin[e + 1] || is_viscous(model, e));
+      ASSERT_EQ(v < patch.laws, has_law(model, e));
+      ASSERT_EQ(v < patch.special,
+                has_law(model, e) || is_viscous(model, e) || model.fibre_begin[e] < model.fibre_begin[e + 1]);
     }
     for (std::uint32_t n = patch.first_node; n < patch.first_node + patch.nodes; ++n)
       for (int b = 0; b < 8; ++b)
@@ -96,6 +98,13 @@ TEST(VoxelPatches, TakeVoxelsThatCostMoreFirst)
   for (const unsigned effects : { test::viscosity, test::contraction, test::everything })
     for (const int blocks : { 1, 3 })
       check_patches(test::scene_of(effects), { blocks, 2 });
+  Model laws = test::scene_of(test::everything);
+  laws.materials.push_back(laws.materials.front());
+  laws.materials.back().law = static_cast<Law>(1);
+  for (std::size_t e = 0; e < laws.voxels.size(); e += 3)
+    laws.mixture_material[laws.mixture_begin[e]] = static_cast<std::int16_t>(laws.materials.size() - 1);
+  for (const int blocks : { 1, 3 })
+    check_patches(laws, { blocks, 2 });
 }
 
 TEST(VoxelPatches, HaveTheNodesOfVoxelsBesideTheirOwn)

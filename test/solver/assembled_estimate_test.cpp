@@ -58,7 +58,7 @@ TEST(AssembledEstimate, is_found_at_first_and_then_ever_more_rarely)
   EXPECT_DOUBLE_EQ(estimate.frequency_squared(2 * rest), 1.25 * rest) << "it grows with it";
   for (const int steps : { 200, 400, 800, 1600, 2000, 2000 })
     EXPECT_EQ(search.steps_until_next(estimate, 0), steps);
-  EXPECT_DOUBLE_EQ(estimate.frequency_squared(rest), 1.05 * 0.5 * rest);
+  EXPECT_DOUBLE_EQ(estimate.frequency_squared(rest), 1.1 * 0.5 * rest);
 }
 
 TEST(AssembledEstimate, is_found_again_where_the_bound_has_grown)

@@ -77,7 +77,7 @@ enum class Precision : std::uint8_t
 enum class TimeStepEstimate : std::uint8_t
 {
   element,   ///< bounded at nodes from the stiffness of their voxels: always safe
-  assembled  ///< by power iteration on the assembled model, renewed as it stiffens; longer if few voxels are stiff
+  assembled  ///< by Lanczos iteration on the assembled model, renewed as it stiffens; longer
 };
 
 }  // namespace frontalis

@@ -9,7 +9,7 @@ namespace
 {
 
 // Margins are needed, because the search finds too low an eigenvalue, and the model may stiffen until the next search.
-constexpr double frequency_margin = 1.05;  // factor on the squared frequency
+constexpr double frequency_margin = 1.1;  // factor on the squared frequency
 // replaces `frequency_margin` while searches are frequent
 constexpr double margin_in_motion = 1.25;
 // Numbers of steps between searches. A search takes as long as about 40 steps. After a change of activations or while
@@ -46,7 +46,7 @@ void AssembledEstimate::renew(const std::vector<float>& activation, bool moving,
     steps_valid_ = shortest_valid;
   else if (!grown)
     steps_valid_ = std::min(2 * steps_valid_, longest_valid);
-  const double allowance = steps_valid_ < longest_valid ? margin_in_motion : frequency_margin;
+  const double allowance = grown || steps_valid_ < longest_valid ? margin_in_motion : frequency_margin;
   share_ = found > 0 && std::isfinite(found) ? std::min(1.0, allowance * found / bound) : 1.0;
   steps_ = 0;
   bound_ = bound;

@@ -12,7 +12,7 @@ namespace
 
 // The eigenvalue has settled after at least `fewest_rows` if the last two rows raised it by less than `tolerance`.
 constexpr std::size_t fewest_rows = 8;
-constexpr double tolerance = 5e-3;
+constexpr double tolerance = 2e-3;
 // The iteration ends where a vector's image lies along itself and the vector before, but for rounding.
 constexpr double smallest_remainder = 1e-6;
 
@@ -120,7 +120,7 @@ double highest_frequency_squared(const Model& model, const Discretisation& discr
   now.measure(root);
   double length_before = 1;
   LanczosMatrix matrix;
-  for (int iteration = 0; iteration < lanczos_iterations && !matrix.settled() && now.largest > 0; ++iteration)
+  for (int iteration = 0; iteration < most_lanczos_iterations && !matrix.settled() && now.largest > 0; ++iteration)
   {
     const double scale = mode_amplitude(model, iteration) / now.largest, length = std::sqrt(now.squared_length);
     for (std::size_t n = 0; n < root.size(); ++n)

@@ -94,11 +94,11 @@ TimeStepController::Choice TimeStepController::choose(double remaining, double l
 
 void TimeStepController::observe(double frequency_squared, int steps)
 {
-  const double estimate = state_.assembled.frequency_squared(frequency_squared);
-  const bool changes = std::abs(estimate - state_.latest_observed) > vibration_change * state_.latest_observed;
-  const bool vibrates = changes && estimate > stiffening_ratio * rest_frequency_squared_;
+  const double covered = state_.assembled.bound_covered(frequency_squared);
+  const bool changes = std::abs(covered - state_.latest_observed) > vibration_change * state_.latest_observed;
+  const bool vibrates = changes && state_.assembled.share() * covered > stiffening_ratio * rest_frequency_squared_;
   const bool stiffens = frequency_squared > alarming_frequency_squared();
-  state_.latest_observed = estimate;
+  state_.latest_observed = covered;
   state_.cautious_steps_left = std::max(stiffens ? steps_after_stiffening : 0, state_.cautious_steps_left - steps);
   state_.vibration_steps_left = std::max(vibrates ? steps_after_vibration : 0, state_.vibration_steps_left - steps);
   if (!mutation::time_step_of_rest)

@@ -19,7 +19,7 @@ public:
   struct State
   {
     double frequency_squared = 0;  ///< bound at nodes from which steps are chosen [1/s2]
-    double latest_observed = 0;    ///< estimate for the latest bound that a backend found [1/s2]
+    double latest_observed = 0;    ///< bound that the estimate covered in the latest plan [1/s2]
     int cautious_steps_left = 0;
     int vibration_steps_left = 0;
     AssembledEstimate assembled;

@@ -185,7 +185,7 @@ void TimeStepper::renew_assembled_estimate(const Controls& asked)
   };
   std::vector<float> most = motion_.activation;
   for (std::size_t m = 0; m < most.size(); ++m)
-    most[m] = std::max(most[m], asked.activation[m]);
+    most[m] = std::max({ most[m], motion_.controls.activation[m], asked.activation[m] });
   const bool bones_move = !std::equal(asked.bone.begin(), asked.bone.end(), motion_.controls.bone.begin(),
                                       [](const RigidTransform& a, const RigidTransform& b)
                                       { return a.rotation == b.rotation && a.translation == b.translation; });
@@ -304,6 +304,7 @@ void TimeStepper::effects_switched(const std::vector<Effect>& effects)
     ledger_->effects_switched();
   if (motion_.diverged)
     return;
+  controller_.assembled().discard();
   if (std::any_of(effects.begin(), effects.end(), is_of_fibres))
     displacements_were_set();
   else
