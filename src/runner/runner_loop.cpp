@@ -207,9 +207,14 @@ void Runner::Implementation::run_frame()
   }
   publish();
   std::unique_lock<std::mutex> lock(mutex);
-  if (settings.pace == Pace::real_time || frame.failed)
-    wake.wait_until(lock, deadline,
-                    [&] { return stop || reset_wanted || step_request != nullptr || switch_request != nullptr; });
+  if (settings.pace != Pace::real_time && !frame.failed)
+    return;
+  const bool waits = Clock::now() < deadline;
+  wake.wait_until(lock, deadline,
+                  [&] { return stop || reset_wanted || step_request != nullptr || switch_request != nullptr; });
+  // While a face waits for its next frame, there is no progress to be told.
+  if (waits)
+    last_told = Clock::now();
 }
 
 void Runner::Implementation::serve_step(StepRequest& request)
