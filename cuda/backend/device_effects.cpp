@@ -85,8 +85,7 @@ void DeviceModel::run_tasks(EffectSet running)
   effects_ = voxel_part(effects_) | node_part(tasks);
   auto words = whole_.patch_tasks;
   for (std::int32_t& word : words)
-    if (!slides && (word >= 0 || (word < patch_task::none && word != patch_task::still &&
-                                  patch_task::kind_of(word) == patch_task::glides)))
+    if (!slides && (word >= 0 || patch_task::is(patch_task::glides, word)))
       word = patch_task::none;
   patch_tasks_.upload(words.data(), words.size());
 }

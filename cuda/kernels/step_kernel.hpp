@@ -235,6 +235,11 @@ enum Kind : std::int32_t
 
 __host__ __device__ inline std::int32_t coded(Kind kind, std::int32_t index) { return none - 1 - kinds * index - kind; }
 __host__ __device__ inline Kind kind_of(std::int32_t task) { return static_cast<Kind>((none - 1 - task) % kinds); }
+/// Whether an entry is coded, with this kind.
+__host__ __device__ inline bool is(Kind kind, std::int32_t task)
+{
+  return task < none && task != still && kind_of(task) == kind;
+}
 __host__ __device__ inline std::int32_t index_of(std::int32_t task) { return (none - 1 - task) / kinds; }
 }  // namespace patch_task
 

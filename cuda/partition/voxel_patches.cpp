@@ -15,7 +15,8 @@ namespace
 {
 
 // Costs relative to a voxel without effects. They were measured on blocks in which all voxels or none have the effect.
-// The cost of nodes that slide on moving bones was chosen to minimise the wall time per step of the generated head.
+// The cost of nodes that slide on moving bones was chosen to minimise the wall time per step of the generated head,
+// when these nodes were still computed in double precision.
 constexpr float fibre_cost = 0.4f, viscous_cost = 0.45f, node_cost = 0.8f, glide_cost = 5;
 
 std::int32_t fibres_of(const Model& model, std::size_t e) { return model.fibre_begin[e + 1] - model.fibre_begin[e]; }

@@ -4,8 +4,8 @@ namespace frontalis
 {
 
 // An attached node moves by the share `ratio` of its master's motion relative to the bone. By the principle of virtual
-// work, the master feels that share of the force, and the bone feels the rest. Of a force
-// on a node that slides on a surface, this is true of the part along the surface's normal.
+// work, the master feels that share of the force, and the bone feels the rest. Of a force on a node that slides on a
+// surface, this is true of the part along the surface's normal.
 void add_attached_nodes(BoneForces& bones)
 {
   using Vector = BoneForces::Vector;

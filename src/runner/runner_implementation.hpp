@@ -64,7 +64,7 @@ struct Runner::Implementation
   Clock::time_point deadline{};  ///< wall time at which the present frame ends
   Clock::time_point start = Clock::now();
   Clock::time_point last_monitor{};
-  Clock::time_point last_told{};  // when time and activations were last handed out
+  Clock::time_point last_told{};  // when progress or a frame was last handed out, or a wait for a frame ended
   Profile last_profile;           ///< of the solver at the latest renewal of the monitor
   std::thread thread;
 
