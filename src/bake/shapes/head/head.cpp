@@ -20,10 +20,13 @@ struct HairLayer
   double height, rise;  // [m]
 };
 constexpr HairLayer hair_layers[] = { { "hair", 3.5e-3, 14e-3 }, { "hair_top", 9e-3, 34e-3 } };
-constexpr double hair_margin = 3e-3;  // [m] by which the surface of hair goes on, under the skin, beyond the hairline
 // Slope of the surface of hair against the skin, on both sides of the hairline. It is constant there, so that the line
 // in which the two surfaces meet is as smooth as the hairline and does not run from vertex to vertex.
 constexpr double hair_slope = 0.35;
+constexpr double hair_rise = 3e-3;  // [m] over which hair rises with this slope
+// By which the surface of hair goes on, under the skin, beyond the hairline [m]: its edge must stay below skin that
+// moves, by 1.5 mm inwards as the brows rise.
+constexpr double hair_margin = 7e-3;
 constexpr double hairline_wave = 1e-3;  // [m] by which locks shift the hairline
 constexpr double lock_height = 0.12;    // height of a lock divided by the thickness of the hair
 
@@ -73,7 +76,7 @@ TriangleMesh hair_on(const TriangleMesh& skin,
       if (&layer == hair_layers)
       {
         covered[v] = deep > -hair_margin;
-        height += hair_slope * std::clamp(deep, -hair_margin, hair_margin);
+        height += hair_slope * std::clamp(deep, -hair_margin, hair_rise);
       }
     }
     mesh.vertices[v] = to_array(p + height * normals[v]);
