@@ -3,6 +3,7 @@
 #include "cli/progress.hpp"
 
 #include "frontalis/error.hpp"
+#include "frontalis/solver/fine_lines.hpp"
 #include "frontalis/solver/guard.hpp"
 #include "frontalis/study/faces.hpp"
 #include "frontalis/study/portrait.hpp"
@@ -51,6 +52,22 @@ std::vector<std::string> chosen_expressions(const FacesOptions& options, const M
   return names;
 }
 
+/// The skin with its fine lines, if the model has some, as they are after a few frames.
+SkinState with_lines(FineLines* lines, const SkinState& skin)
+{
+  constexpr int frames = 8;
+  SkinState out = skin;
+  if (lines == nullptr)
+    return out;
+  lines->reset();
+  for (int frame = 0; frame < frames; ++frame)
+  {
+    out = skin;
+    lines->add_to(out, true);
+  }
+  return out;
+}
+
 void measure_faces(FacesOptions& options)
 {
   if (options.people.empty())
@@ -71,13 +88,15 @@ void measure_faces(FacesOptions& options)
     if (interrupt_requested())
       throw Interrupted();
   };
+  const std::unique_ptr<FineLines> fine_lines = FineLines::make(model, false);
   if (!options.pictures.empty())
     options.settings.settled = [&](const std::string& name, const SkinState& skin, const Controls& controls)
     {
       if (!portrait)
         portrait.emplace(*model, skin);
-      if (!name.empty() || pictures.empty())
-        pictures.emplace_back(name.empty() ? "rest" : name, portrait->draw(skin, controls));
+      if (name.empty() && !pictures.empty())
+        return;
+      pictures.emplace_back(name.empty() ? "rest" : name, portrait->draw(with_lines(fine_lines.get(), skin), controls));
     };
   std::vector<FaceRow> rows;
   std::vector<std::string> faults;

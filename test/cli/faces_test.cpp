@@ -78,6 +78,18 @@ TEST(Faces, the_generated_head_raises_its_brows_frowns_smiles_and_blinks)
   EXPECT_LT(std::abs(up(half.mapped().at("brow_mid_right"))), 1);
 }
 
+// Lines of the forehead: 3 to 5, 8 to 16 mm apart, 0.5 to 2.5 mm deep in people.
+TEST(Faces, raised_brows_of_the_generated_head_draw_lines_across_its_forehead)
+{
+  const TemporaryFolder folder;
+  const ProgramResult result = run_program({ "run", config + "head.yaml", "--accuracy", "draft", "--expression",
+                                             "raise_brows", "--ramp", "0.15", "--seconds", "0.25", "--frame-rate", "20",
+                                             "--frames", folder / "frames", "--wrinkles-in=-40,14,40,60" });
+  ASSERT_EQ(result.code, 0) << result.errors;
+  const nlohmann::json wrinkles = json_from(text_of(folder / "frames/run.json")).at("wrinkles");
+  EXPECT_GE(wrinkles.at("furrows").size(), 3u) << wrinkles;
+}
+
 TEST(Faces, wrong_input_is_told)
 {
   const TemporaryFolder folder;
