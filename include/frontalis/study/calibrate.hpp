@@ -14,15 +14,18 @@ namespace frontalis
 // Calibration of a robot's face: how far its actuators move the bones (anchors) of the model, and how stiff its skin
 // is.
 
-/// An actuator, and the motion of bones that it causes per unit of its position. `moves` has the components of this
-/// motion, with the names and units of value_controls(): BONE.x [mm], BONE.rx [degrees] and so on.
+/// An actuator, and the motion of bones that it causes per unit of its position. A bone that several actuators move is
+/// first shifted by the sum of their shifts, then turned by the sum of their turns.
 struct Actuator
 {
   std::string name;
-  std::map<std::string, double> moves;
+  /// per bone: shift along x, y and z [mm] and rotation vector [degrees], along the axes of the face frame
+  std::map<std::string, std::array<double, 6>> moves;
+  std::array<double, 3> about{};  ///< point of the face frame about which bones turn [mm]
 };
 
-/// Reads the entry `actuators` of a file (YAML, doc/robots.md). Throws Error with the file's line.
+/// Reads the entry `actuators` of a file (YAML, doc/robots.md). Throws Error with the file's line, also if actuators turn
+/// a bone about different points.
 std::vector<Actuator> read_actuators(const std::string& path);
 
 /// Positions and efforts of actuators at several times.

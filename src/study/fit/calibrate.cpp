@@ -1,5 +1,6 @@
 #include "frontalis/study/calibrate.hpp"
 
+#include "frontalis/solver/rigid_motion.hpp"
 #include "frontalis/study/csv.hpp"
 #include "frontalis/study/table.hpp"
 #include "study/fit/influence.hpp"
@@ -11,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 
 namespace frontalis
@@ -70,62 +72,119 @@ Poses poses_of(const ActuatorTrack& track, const LandmarkTrack& landmarks)
   return poses;
 }
 
-// The components of bones' motions (parts) that the actuators cause, with limits that include all poses.
-std::vector<Unknown> parts_of(const std::vector<Actuator>& actuators, const Poses& poses)
+constexpr const char* axes[] = { "x", "y", "z", "rx", "ry", "rz" };
+
+// An actuator's motion as an entry of its file.
+std::string text_of(const Actuator& actuator)
 {
-  std::map<std::string, Unknown> parts;
-  for (std::size_t a = 0; a < actuators.size(); ++a)
-    for (const auto& [part, per_unit] : actuators[a].moves)
-      parts[part] = { part, 0, 0 };
-  for (const VectorXd& position : poses.position)
+  std::vector<std::string> moves;
+  bool turns = false;
+  for (const auto& [bone, move] : actuator.moves)
+    for (std::size_t i = 0; i < move.size(); ++i)
+      if (move[i] != 0)
+      {
+        moves.push_back(fmt::format("{}.{}: {:.7g}", bone, axes[i], move[i]));
+        turns |= i >= 3;
+      }
+  if (turns)
+    moves.push_back(fmt::format("about: [{:.7g}]", fmt::join(actuator.about, ", ")));
+  return fmt::format("{}: {{{}}}", actuator.name, fmt::join(moves, ", "));
+}
+
+Actuator actuator_from(const std::string& name, const YAML::Node& node)
+{
+  if (!node.IsMap())
+    throw YAML::Exception(node.Mark(), fmt::format("{} has no motions of bones", name));
+  Actuator out{ name, {}, {} };
+  for (const auto& entry : node)
   {
-    std::map<std::string, double> values;
-    for (std::size_t a = 0; a < actuators.size(); ++a)
-      for (const auto& [part, per_unit] : actuators[a].moves)
-        values[part] += per_unit * position[static_cast<Index>(a)];
-    for (const auto& [part, value] : values)
+    const auto key = entry.first.as<std::string>();
+    if (key == "about")
     {
-      parts[part].lower = std::min(parts[part].lower, range_margin * value);
-      parts[part].upper = std::max(parts[part].upper, range_margin * value);
+      out.about = entry.second.as<std::array<double, 3>>();
+      continue;
     }
+    const std::size_t dot = key.rfind('.');
+    const auto* const axis = std::find(std::begin(axes), std::end(axes), key.substr(dot + 1));
+    if (dot == std::string::npos || axis == std::end(axes))
+      throw YAML::Exception(entry.first.Mark(), fmt::format("'{}' is no bone's .x, .y, .z, .rx, .ry or .rz", key));
+    out.moves[key.substr(0, dot)][static_cast<std::size_t>(axis - axes)] = entry.second.as<double>();
   }
+  return out;
+}
+
+bool turns(const std::array<double, 6>& move) { return move[3] != 0 || move[4] != 0 || move[5] != 0; }
+
+// The actuators as unknowns, with limits that include all poses.
+std::vector<Unknown> unknowns_of(const std::vector<Actuator>& actuators, const Poses& poses)
+{
   std::vector<Unknown> out;
-  out.reserve(parts.size());
-  for (const auto& [name, part] : parts)
+  for (std::size_t a = 0; a < actuators.size(); ++a)
   {
-    if (!(part.lower < part.upper))
-      throw Error(fmt::format("the actuators of {} never leave 0; each must move in some pose", name));
-    out.push_back(part);
+    // The stored influence of an actuator is that of its motion.
+    Unknown unknown{ text_of(actuators[a]), 0, 0 };
+    for (const VectorXd& position : poses.position)
+    {
+      unknown.lower = std::min(unknown.lower, range_margin * position[static_cast<Index>(a)]);
+      unknown.upper = std::max(unknown.upper, range_margin * position[static_cast<Index>(a)]);
+    }
+    if (!(unknown.lower < unknown.upper))
+      throw Error(fmt::format("actuator {} never leaves 0; each must move in some pose", actuators[a].name));
+    out.push_back(unknown);
   }
   return out;
 }
 
-// Matrix from the actuators' positions to the parts of motion: one row per part, one column per actuator.
-MatrixXd motion_of(const std::vector<Actuator>& actuators, const std::vector<Unknown>& parts)
+// The bones that actuators move to the given positions.
+Controls moved_bones(const Model& model, const std::vector<Actuator>& actuators, const NamedValues& positions)
 {
-  MatrixXd out = MatrixXd::Zero(static_cast<Index>(parts.size()), static_cast<Index>(actuators.size()));
-  for (Index a = 0; a < out.cols(); ++a)
-    for (Index p = 0; p < out.rows(); ++p)
-      if (const auto& moves = actuators[static_cast<std::size_t>(a)].moves;
-          moves.count(parts[static_cast<std::size_t>(p)].name) > 0)
-        out(p, a) = moves.at(parts[static_cast<std::size_t>(p)].name);
-  return out;
+  struct Motion
+  {
+    std::array<double, 3> shift{}, turn{}, about{};  // [m], [rad]
+  };
+  std::map<std::string, Motion> motions;
+  for (const Actuator& actuator : actuators)
+    if (const auto position = positions.find(text_of(actuator)); position != positions.end())
+      for (const auto& [bone, move] : actuator.moves)
+      {
+        Motion& motion = motions[bone];
+        for (std::size_t i = 0; i < 3; ++i)
+        {
+          motion.shift[i] += millimetre * move[i] * position->second;
+          motion.turn[i] += degree * move[3 + i] * position->second;
+          if (turns(move))
+            motion.about[i] = millimetre * actuator.about[i];
+        }
+      }
+  Controls controls = rest_controls(model);
+  for (auto& [bone, motion] : motions)
+  {
+    for (std::size_t i = 0; i < 3; ++i)
+      motion.shift[i] -= motion.about[i];
+    set_bone_motion(model, bone, composed(rigid_motion(motion.turn, motion.about), rigid_motion({}, motion.shift)),
+                    controls.bone);
+  }
+  return controls;
 }
 
-// Work [J] of the tissue on bones per mm or degree of each part of motion.
-VectorXd conjugate_forces(const Model& model, const std::vector<BodyFrame>& bones, const std::vector<Unknown>& parts)
+// Work [J] of the tissue on bones per unit of an actuator's position.
+double work_of(const Model& model, const std::vector<BodyFrame>& bones, const Actuator& actuator)
 {
-  VectorXd out(static_cast<Index>(parts.size()));
-  for (Index p = 0; p < out.size(); ++p)
+  using Vector = physics::Vec3<double>;
+  double work = 0;
+  for (const auto& [name, move] : actuator.moves)
   {
-    const std::string& name = parts[static_cast<std::size_t>(p)].name;
-    const std::size_t dot = name.rfind('.');
-    const auto bone = std::find(model.bones.begin(), model.bones.end(), name.substr(0, dot)) - model.bones.begin();
-    const auto axis = static_cast<std::size_t>(name.back() - 'x');
-    const Reaction& reaction = bones[static_cast<std::size_t>(bone)].reaction;
-    out[p] = name[dot + 1] == 'r' ? degree * double(reaction.moment[axis]) : millimetre * double(reaction.force[axis]);
+    const auto bone = std::find(model.bones.begin(), model.bones.end(), name) - model.bones.begin();
+    const auto& [reaction, pose] = bones[static_cast<std::size_t>(bone)];
+    const Vector force = vector_of(reaction.force);
+    // moves the reference point of the moment from the bone's point that rests at the face frame's origin
+    const Vector arm = vector_of(pose.translation) - millimetre * vector_of(actuator.about);
+    const Vector moment = vector_of(reaction.moment) + cross(arm, force);
+    const std::array<double, 3> shift{ { move[0], move[1], move[2] } };
+    work += millimetre * dot(force, vector_of(pose.turned(shift))) +
+            degree * dot(moment, Vector{ move[3], move[4], move[5] });
   }
-  return out;
+  return work;
 }
 
 double root_mean_square(double sum, std::size_t poses, std::size_t landmarks)
@@ -141,7 +200,15 @@ std::vector<Actuator> read_actuators(const std::string& path)
   try
   {
     for (const auto& entry : YAML::LoadFile(path)["actuators"])
-      out.push_back({ entry.first.as<std::string>(), entry.second.as<std::map<std::string, double>>() });
+    {
+      const Actuator& actuator = out.emplace_back(actuator_from(entry.first.as<std::string>(), entry.second));
+      for (const Actuator& other : out)
+        for (const auto& [bone, move] : actuator.moves)
+          if (const auto same = other.moves.find(bone);
+              same != other.moves.end() && turns(move) && turns(same->second) && other.about != actuator.about)
+            throw YAML::Exception(entry.first.Mark(), fmt::format("{} and {} turn {} about different points",
+                                                                  other.name, actuator.name, bone));
+    }
   }
   catch (const YAML::BadFile&)
   {
@@ -204,13 +271,14 @@ Calibration calibrate(const std::shared_ptr<const Model>& model, const std::vect
                       const ActuatorTrack& track, const LandmarkTrack& landmarks, const CalibrationSettings& settings)
 {
   Poses poses = poses_of(track, landmarks);
-  const std::vector<Unknown> parts = checked_unknowns(*model, parts_of(actuators, poses));
+  const std::vector<Unknown> unknowns = unknowns_of(actuators, poses);
   const std::vector<Index> seen = coordinates_of(*model, landmarks);
-  const MatrixXd motion = motion_of(actuators, parts);
-  ForwardRuns runs(model, settings);
+  ForwardRuns runs(model, settings,
+                   [&](const Model& of, const NamedValues& positions)
+                   { return moved_bones(of, actuators, positions); });
   double seconds = 0;
-  const Influence influence = obtain_influence(runs, parts, settings, seconds);
-  const InfluenceLaw law(*model, influence, parts);
+  const Influence influence = obtain_influence(runs, unknowns, settings, seconds);
+  const InfluenceLaw law(*model, influence, unknowns);
 
   const std::size_t count = poses.position.size();
   std::vector<std::size_t> used, all;
@@ -223,11 +291,11 @@ Calibration calibrate(const std::shared_ptr<const Model>& model, const std::vect
       used.push_back(p);
   }
   const auto values = [&](std::size_t pose, const VectorXd& gains) -> VectorXd
-  { return motion * gains.cwiseProduct(poses.position[pose]); };
+  { return gains.cwiseProduct(poses.position[pose]); };
   const auto missing = [&](std::size_t pose, const VectorXd& gains) -> VectorXd
   { return poses.places[pose] - poses.offset[pose] - VectorXd(law.displacement(values(pose, gains))(seen)); };
 
-  VectorXd gains = VectorXd::Ones(motion.cols());
+  VectorXd gains = VectorXd::Ones(static_cast<Index>(actuators.size()));
   double before = 0;
   for (const std::size_t pose : all)
     before += missing(pose, gains).squaredNorm();
@@ -240,8 +308,8 @@ Calibration calibrate(const std::shared_ptr<const Model>& model, const std::vect
       VectorXd g = weight * (VectorXd::Ones(gains.size()) - gains);
       for (const std::size_t pose : used)
       {
-        const MatrixXd derivative = MatrixXd(law.derivative(values(pose, gains))(seen, Eigen::all)) * motion *
-                                    poses.position[pose].asDiagonal();
+        const MatrixXd derivative =
+            MatrixXd(law.derivative(values(pose, gains))(seen, Eigen::all)) * poses.position[pose].asDiagonal();
         h += derivative.transpose() * derivative;
         g += derivative.transpose() * missing(pose, gains);
       }
@@ -250,14 +318,14 @@ Calibration calibrate(const std::shared_ptr<const Model>& model, const std::vect
   };
 
   Calibration out;
-  double dot = 0, square = 0, error = 0, held_out_error = 0;
+  double product = 0, square = 0, error = 0, held_out_error = 0;
   const auto simulate = [&](std::size_t pose, const std::string& stage, std::size_t number, std::size_t of)
   {
     runs.announce(stage, static_cast<double>(number) / static_cast<double>(of));
     const VectorXd moved = values(pose, gains);
-    std::map<std::string, double> named;
-    for (std::size_t i = 0; i < parts.size(); ++i)
-      named[parts[i].name] = moved[static_cast<Index>(i)];
+    NamedValues named;
+    for (std::size_t i = 0; i < unknowns.size(); ++i)
+      named[unknowns[i].name] = moved[static_cast<Index>(i)];
     VectorXd displaced = (runs.settle(named) - influence.rest)(seen);
     poses.offset[pose] = displaced - VectorXd(law.displacement(moved)(seen));
     return displaced;
@@ -274,12 +342,13 @@ Calibration calibrate(const std::shared_ptr<const Model>& model, const std::vect
     const double square_error = (poses.places[pose] - simulate(pose, "poses", pose, count)).squaredNorm();
     (std::count(used.begin(), used.end(), pose) > 0 ? error : held_out_error) += square_error;
     // An actuator holds its bones in place, so that its effort is opposite to the tissue's forces.
-    const VectorXd held = -motion.transpose() * conjugate_forces(*model, runs.bones(), parts);
-    for (Index a = 0; a < held.size(); ++a)
-      if (const double measured = poses.effort[pose][a]; std::isfinite(measured))
+    const std::vector<BodyFrame> bones = runs.bones();
+    for (std::size_t a = 0; a < actuators.size(); ++a)
+      if (const double measured = poses.effort[pose][static_cast<Index>(a)]; std::isfinite(measured))
       {
-        dot += held[a] * measured;
-        square += held[a] * held[a];
+        const double held = -work_of(*model, bones, actuators[a]);
+        product += held * measured;
+        square += held * held;
       }
   }
   out.poses = used.size();
@@ -288,12 +357,13 @@ Calibration calibrate(const std::shared_ptr<const Model>& model, const std::vect
   out.error = root_mean_square(error, used.size(), points);
   out.held_out_error = root_mean_square(held_out_error, count - used.size(), points);
   out.error_before = root_mean_square(before, count, points);
-  out.modulus = square > 0 ? dot / square : NAN;
+  out.modulus = square > 0 ? product / square : NAN;
   out.gains.assign(gains.begin(), gains.end());
   out.actuators = actuators;
   for (std::size_t a = 0; a < actuators.size(); ++a)
-    for (auto& [part, per_unit] : out.actuators[a].moves)
-      per_unit *= out.gains[a];
+    for (auto& [bone, move] : out.actuators[a].moves)
+      for (double& per_unit : move)
+        per_unit *= out.gains[a];
   return out;
 }
 
@@ -310,12 +380,7 @@ std::string yaml_of(const Calibration& calibration)
       mm(calibration.held_out_error),
       std::isfinite(calibration.modulus) ? fmt::format("{:.5f}", calibration.modulus) : "null");
   for (std::size_t a = 0; a < calibration.actuators.size(); ++a)
-  {
-    std::string moves;
-    for (const auto& [part, per_unit] : calibration.actuators[a].moves)
-      moves += fmt::format("{}{}: {:.7g}", moves.empty() ? "" : ", ", part, per_unit);
-    text += fmt::format("  {}: {{{}}}  # {:.5f}\n", calibration.actuators[a].name, moves, calibration.gains[a]);
-  }
+    text += fmt::format("  {}  # {:.5f}\n", text_of(calibration.actuators[a]), calibration.gains[a]);
   return text;
 }
 

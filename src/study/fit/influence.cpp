@@ -114,8 +114,10 @@ double largest_distance(const VectorXd& places, const VectorXd& others)
 
 }  // namespace
 
-ForwardRuns::ForwardRuns(std::shared_ptr<const Model> model, const FitSettings& settings)
+ForwardRuns::ForwardRuns(std::shared_ptr<const Model> model, const FitSettings& settings,
+                         std::function<Controls(const Model&, const NamedValues&)> controls)
     : model_(std::move(model)),
+      controls_(std::move(controls)),
       watch_(settings.watch ? settings.watch : [](const std::string&, double) {}),
       solver_(make_solver(model_, settings.solver)),
       guard_(*solver_, model_)
@@ -140,7 +142,7 @@ VectorXd ForwardRuns::places()
   return out;
 }
 
-VectorXd ForwardRuns::settle(const std::map<std::string, double>& values, bool from_rest)
+VectorXd ForwardRuns::settle(const NamedValues& values, bool from_rest)
 {
   if (from_rest)
   {
@@ -176,7 +178,7 @@ VectorXd ForwardRuns::settle(const std::map<std::string, double>& values, bool f
   {
     // The solver judges all tissue. With this tolerance it ends the relaxation only if nothing moves at all.
     reached = guard_
-                  .settle(value_controls(*model_, values), std::numeric_limits<double>::min(),
+                  .settle(controls_(*model_, values), std::numeric_limits<double>::min(),
                           longest_relaxation / model_->time_scaling, moves)
                   .reached;
   }

@@ -18,17 +18,22 @@ namespace frontalis
 
 // Vectors of places have x, y and z of each landmark of the model, in this order, in the face frame [m].
 
+/// Values of unknowns by their names.
+using NamedValues = std::map<std::string, double>;
+
 /// The simulations of a fit.
 class ForwardRuns
 {
 public:
-  ForwardRuns(std::shared_ptr<const Model> model, const FitSettings& settings);
+  /// `controls`: what unknowns of given values do to the model; those that are not named are at rest.
+  ForwardRuns(std::shared_ptr<const Model> model, const FitSettings& settings,
+              std::function<Controls(const Model&, const NamedValues&)> controls = value_controls);
 
   /// Names the stage of the fit to which the next simulations belong.
   void announce(const std::string& stage, double done);
   /// Places of the landmarks in equilibrium. The face starts at rest, or else where the simulation before has left it.
   /// Throws Error if no equilibrium is found.
-  Eigen::VectorXd settle(const std::map<std::string, double>& values, bool from_rest = true);
+  Eigen::VectorXd settle(const NamedValues& values, bool from_rest = true);
   /// Places of the landmarks at each of the given times, under controls that change linearly between knots. The face
   /// starts at rest.
   std::vector<Eigen::VectorXd> play(const ControlCurve& curve, const std::vector<double>& times);
@@ -42,6 +47,7 @@ private:
   Eigen::VectorXd places();  // present places of the landmarks
 
   std::shared_ptr<const Model> model_;
+  std::function<Controls(const Model&, const NamedValues&)> controls_;
   std::function<void(const std::string&, double)> watch_;
   std::string stage_;
   double done_ = 0;
