@@ -52,22 +52,6 @@ std::vector<std::string> chosen_expressions(const FacesOptions& options, const M
   return names;
 }
 
-/// The skin with its fine lines, if the model has some, as they are after a few frames.
-SkinState with_lines(FineLines* lines, const SkinState& skin)
-{
-  constexpr int frames = 8;
-  SkinState out = skin;
-  if (lines == nullptr)
-    return out;
-  lines->reset();
-  for (int frame = 0; frame < frames; ++frame)
-  {
-    out = skin;
-    lines->add_to(out, true);
-  }
-  return out;
-}
-
 void measure_faces(FacesOptions& options)
 {
   if (options.people.empty())
@@ -96,7 +80,10 @@ void measure_faces(FacesOptions& options)
         portrait.emplace(*model, skin);
       if (name.empty() && !pictures.empty())
         return;
-      pictures.emplace_back(name.empty() ? "rest" : name, portrait->draw(with_lines(fine_lines.get(), skin), controls));
+      SkinState lined = skin;
+      if (fine_lines)
+        fine_lines->add_settled(lined);
+      pictures.emplace_back(name.empty() ? "rest" : name, portrait->draw(lined, controls));
     };
   std::vector<FaceRow> rows;
   std::vector<std::string> faults;

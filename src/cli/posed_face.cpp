@@ -23,7 +23,7 @@ void PosedFace::read_skin(SkinState& skin)
 {
   solver_->skin(skin);
   if (fine_lines_)
-    fine_lines_->add_to(skin, true);
+    fine_lines_->add_settled(skin);
   to_face_frame(*model_, skin);
 }
 
@@ -31,8 +31,6 @@ const SkinState& PosedFace::take(const Controls& pose, double seconds, const std
 {
   constexpr int slices = 12;  // Ctrl-C takes effect between two slices
   solver_->reset();
-  if (fine_lines_)
-    fine_lines_->reset();
   guard_.restart();
   const ControlCurve curve{ { 0, seconds * 2 / 3 }, { rest_controls(*model_), pose } };
   for (int slice = 1; slice <= slices; ++slice)

@@ -54,13 +54,14 @@ Vectors resting(const std::shared_ptr<const Model>& model, const RestOptions& op
   return displacements;
 }
 
-// Returns the displacements [m] in a pose.
-Vectors posed(PosedFace& face, const Model& model, const std::string& pose, double seconds)
+// Returns the displacements [m] in a pose; `lines` receives the heights of fine lines [m].
+Vectors posed(PosedFace& face, const Model& model, const std::string& pose, double seconds, std::vector<float>& lines)
 {
   Progress progress;
   try
   {
-    face.take(expression_controls(model, pose), seconds, [&](double done) { progress.update(pose, done); });
+    const auto watch = [&](double done) { progress.update(pose, done); };
+    lines = face.take(expression_controls(model, pose), seconds, watch).line_height;
   }
   catch (const Unstable& error)
   {
@@ -79,8 +80,9 @@ void change_rest(const RestOptions& options)
     throw WrongUsage("nothing to change: give --creases, --neutral or both");
   const auto before = std::make_shared<const Model>(obtain_model(options.source));
   Model model = *before;
-  if (!options.creases.empty() && model.shells.empty())
-    throw Error(options.source.path + ": no layer is a shell ('shell: true'); creases stay in shells alone");
+  if (!options.creases.empty() && model.shells.empty() && model.film.thickness <= 0)
+    throw Error(options.source.path +
+                ": no layer is a shell ('shell: true') and the skin has no fine_lines; creases stay in these alone");
   if (options.neutral)
   {
     const Vectors rest = resting(before, options);
@@ -94,7 +96,13 @@ void change_rest(const RestOptions& options)
   {
     PosedFace face(before, options.solver);
     for (const std::string& pose : options.creases)
-      add_creases(model, posed(face, *before, pose, options.seconds), options.set);
+    {
+      std::vector<float> lines;
+      add_creases(model, posed(face, *before, pose, options.seconds, lines), options.set);
+      model.film.crease.resize(lines.size(), 0);
+      for (std::size_t v = 0; v < lines.size(); ++v)
+        model.film.crease[v] += static_cast<float>(options.set) * lines[v];
+    }
     fmt::print("creases  {:g} of the folds of {} stay\n", options.set, fmt::join(options.creases, ", "));
   }
   // The model gets a hash of its own, because cached data of the original model, such as its influence
@@ -115,9 +123,12 @@ void add_rest_command(CLI::App& app)
       app.add_subcommand("rest", "change a model at rest: creases that stay, a neutral face that is in equilibrium");
   command->add_option("SCENE_OR_MODEL", options->source.path, "scene (YAML) or baked model (.vtkhdf)")->required();
   command->add_option("-o,--output", options->file, "model file to write (.vtkhdf)")->required();
-  command->add_option("--creases", options->creases, "expressions whose folds stay in shells: NAME,NAME,...")
+  command
+      ->add_option("--creases", options->creases,
+                   "expressions whose folds stay in shells and fine lines: NAME,NAME,...")
       ->delimiter(',');
-  command->add_option("--set", options->set, "part of the folds' angles that stays, 0 to 1")->check(CLI::Range(0., 1.));
+  command->add_option("--set", options->set, "part of the folds' angles and of the lines' heights that stays, 0 to 1")
+      ->check(CLI::Range(0., 1.));
   command->add_flag("--neutral", options->neutral,
                     "place the skin so that it is where the scene has it once the tissue is in equilibrium");
   add_positive(*command, "--seconds", options->seconds, "simulated seconds from rest to an expression (0.6)");

@@ -267,6 +267,10 @@ void check_film(const Model& model)
   check_positive("film (base_modulus)", 0, film.base_modulus);
   check_finite("film (poisson)", 0, film.poisson);
   check_not_negative("film", "stretch", film.stretch);
+  if (!film.crease.empty() && film.crease.size() != model.skin.vertices.size())
+    fail("film/crease", "has {} entries; the skin has {} vertices", film.crease.size(), model.skin.vertices.size());
+  for (std::size_t v = 0; v < film.crease.size(); ++v)
+    check_finite("film/crease", v, film.crease[v]);
   if (film.parents.size() > model.skin.vertices.size())
     fail("film/parents", "has {} entries; the skin has {} vertices", film.parents.size(), model.skin.vertices.size());
   const std::size_t carried = model.skin.vertices.size() - film.parents.size();

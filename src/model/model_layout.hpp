@@ -133,6 +133,8 @@ void exchange_model(Archive& archive, AnyModel& model)
     archive("film/stretch", model.film.stretch);
     archive("film/carried", model.film.carried);
     archive("film/parents", model.film.parents);
+    if (archive.group_if(!model.film.crease.empty(), "film/crease"))
+      archive("film/crease", model.film.crease);
   }
   archive("landmarks/name", model.landmarks);
   archive("landmarks/position", model.landmark_positions);

@@ -146,6 +146,25 @@ TEST(Film, AStretchOfTheFilmAtRestDelaysLines)
   EXPECT_GT(amplitude(model, heights(film, compressed(model, 1.1 * needed))), 0.2 * thickness);
 }
 
+// At the wavelength of lines the base is twice as stiff as the film's bending, so that a third of a crease stays.
+TEST(Film, AThirdOfACreaseShowsAtRest)
+{
+  Model model = film_model(100);
+  const double k = 2 * pi / film_wavelength(model.film), deep = thickness;
+  for (const auto& v : model.skin.vertices)
+    model.film.crease.push_back(static_cast<float>(deep * std::cos(k * v[0])));
+  const Vertices rest = compressed(model, 0);
+  FilmEquilibrium creased(model);
+  const std::vector<float> height = heights(creased, rest);
+  // with six edges per wave, the discrete curvature of a wave is a tenth smaller than the true one
+  EXPECT_NEAR(amplitude(model, height), deep / 3, 0.05 * deep);
+  EXPECT_NEAR(wavelength(model, height, 0), film_wavelength(model.film), 0.05 * film_wavelength(model.film));
+  // Tension draws creases flat. Compression by the critical strain would be a force of - 3 in these units.
+  model.film.stretch = 0.5 * film_critical_strain(model.film);
+  FilmEquilibrium stretched(model);
+  EXPECT_NEAR(amplitude(model, heights(stretched, rest)), deep / (3 + 1.5 * (1 + model.film.poisson)), 0.02 * deep);
+}
+
 TEST(Film, LinesAreWhereTheSkinIsCompressed)
 {
   const Model model = film_model(100);

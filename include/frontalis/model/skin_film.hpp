@@ -20,6 +20,8 @@ struct SkinFilm
   double base_modulus = 0;  ///< of the tissue below it, E / (1 - nu^2) [Pa]
   /// tensile strain of the film at rest, equal in all directions of the skin; it delays the onset of lines
   double stretch = 0;
+  /// height [m] per vertex of Model::skin of the shape in which the film has no bending moment; empty: 0
+  std::vector<float> crease;
   std::vector<std::array<std::int32_t, 3>> carried;  ///< triangles of the vertices that follow the voxels
   std::vector<std::array<std::int32_t, 2>> parents;  ///< of each later vertex: the two vertices between which it lies
 };

@@ -26,7 +26,11 @@ public:
   /// the heights of this skin or to use the latest that are ready.
   void add_to(SkinState& skin, bool wait);
 
-  /// Makes the skin flat, as it is at rest, and discards heights that are still being computed.
+  /// Like add_to(), for a skin that stands still: lines grow from the flat skin until they are in equilibrium, so that
+  /// they do not depend on earlier skins. Only without a separate thread.
+  void add_settled(SkinState& skin);
+
+  /// Makes the skin flat and discards heights that are still being computed.
   void reset();
 
   /// Processor time spent on the latest heights [s].

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 namespace frontalis
 {
@@ -17,7 +18,6 @@ using Vector = physics::Vec3<double>;
 constexpr double longest_edge = 1.0 / 3;
 // Heights are computed where the film's largest compression is at least this fraction of the critical strain.
 constexpr double near_critical = 0.5;
-constexpr int most_iterations = 40;
 // The solution is found if an iteration lowers the energy by less than this fraction.
 constexpr double tolerance = 3e-4;
 constexpr double seed_height = 0.05;  // root mean square of the initial heights, divided by the film's thickness
@@ -75,10 +75,12 @@ FilmEquilibrium::FilmEquilibrium(const Model& model)
       order_(cells_.order()),
       strain_(order_.size())
 {
-  make_operators();
-  for (Field* field : { &seed_, &curvature_, &local_ })
+  for (Field* field : { &seed_, &curvature_, &local_, &crease_, &crease_force_ })
     field->resize(order_.size());
+  make_operators();
   make_seed();
+  if (!model.film.crease.empty())
+    make_creases();
 }
 
 // Sets the weights of linear finite elements for the operator div N grad with a tensor N: a triangle of area A
@@ -194,7 +196,7 @@ void FilmEquilibrium::find_active(Field& w)
     const float least = half - std::sqrt(std::max(0.5F * contract(strain_[v], strain_[v]) - half * half, 0.0F));
     const float compression = -((1 - poisson) * least + poisson * sum + (1 + poisson) * stretch);
     sums[v] = poisson * sum + (1 + poisson) * stretch;
-    if (!resolved_[v] || !(compression > near_critical * critical_))
+    if (!resolved_[v] || !(crease_[v] != 0 || compression > near_critical * critical_))
     {
       w[v] = 0;
       continue;
@@ -267,7 +269,7 @@ void FilmEquilibrium::gradient(const Wave& u, const Field& relief, Field& out)
   }
   apply(curvature_, out, nullptr);
   for (const std::int32_t v : active_)
-    out[v] += local_[v];
+    out[v] += local_[v] - crease_force_[v];
 }
 
 // Makes the seed from which lines grow: the sum of plane waves in many directions of space, with the film's wavelength.
@@ -291,6 +293,19 @@ void FilmEquilibrium::make_seed()
   }
 }
 
+// The energy - laplace w laplace w0 is minus the heights times forces that do not depend on them.
+void FilmEquilibrium::make_creases()
+{
+  for (std::size_t v = 0; v < order_.size(); ++v)
+    crease_[v] = model_.film.crease[order_[v]] / static_cast<float>(model_.film.thickness);
+  active_.resize(order_.size());
+  std::iota(active_.begin(), active_.end(), 0);
+  apply(crease_, curvature_, nullptr);
+  for (std::size_t v = 0; v < curvature_.size(); ++v)
+    curvature_[v] = area_[v] > 0 ? curvature_[v] / area_[v] : 0;
+  apply(curvature_, crease_force_, nullptr);
+}
+
 // Inverse of the diagonal of the quadratic energy's matrix.
 void FilmEquilibrium::precondition(Field& inverse) const
 {
@@ -307,8 +322,7 @@ void FilmEquilibrium::precondition(Field& inverse) const
   }
 }
 
-// Conjugate gradients (Polak & Ribiere) with exact line search, since the energy along a line is a polynomial of degree
-// four.
+// Conjugate gradients (Polak & Ribiere) with exact line search: the energy along a line is a polynomial of degree four.
 int FilmEquilibrium::solve(const std::vector<std::array<float, 3>>& vertices, std::vector<float>& height)
 {
   const std::size_t count = order_.size();
@@ -330,7 +344,7 @@ int FilmEquilibrium::solve(const std::vector<std::array<float, 3>>& vertices, st
     double sum = 0.5 * quadratic(now);
     for (std::size_t c = 0; c < relief.size(); ++c)
       sum += 1.5 * static_cast<double>(cells_.areas()[c] * relief[c] * relief[c]);
-    return sum;
+    return sum - inner(active_, crease_force_, now.height);
   };
   double before = energy(), norm_before = 0;
   int iteration = 0;

@@ -20,6 +20,8 @@ namespace frontalis
 /// 3/4 D (q^2 + k^2)^2 has the same value, slope and curvature at k, so that wavelength and critical strain are those
 /// of theory. The term is the square of a differential operator, so that its matrix is sparse and positive.
 /// - Compression: e is the strain of the carried surface. Compression chooses the direction of the lines.
+/// - Creases: a film that is without moment at the heights w0 has the further energy - D laplace w laplace w0. At rest
+/// a third of a wave w0 of the length of lines is left.
 /// - Relief: folding lengthens the film. < > is a mean over about a wavelength, because the film may shift within its
 /// surface. The amplitude is then t (e / e_critical - 1)^(1/2), as in theory, and the wave stays a sine.
 ///
@@ -31,8 +33,10 @@ public:
   /// The model must have a film and must outlive this object.
   explicit FilmEquilibrium(const Model& model);
 
-  /// Improves `height` ([m], one per vertex of the skin; empty: flat) until the film is in equilibrium or a limit of
-  /// iterations is reached. Returns the number of iterations. `vertices`: those of the skin without lines [m].
+  static constexpr int most_iterations = 40;
+
+  /// Improves `height` ([m], one per vertex of the skin; empty: flat) until the film is in equilibrium or
+  /// most_iterations have been made. Returns the number of iterations. `vertices`: those of the skin without lines [m].
   int solve(const std::vector<std::array<float, 3>>& vertices, std::vector<float>& height);
 
 private:
@@ -48,6 +52,7 @@ private:
 
   void make_operators();
   void make_seed();
+  void make_creases();
   void find_strain(const std::vector<std::array<float, 3>>& vertices);
   void find_active(Field& w);
   void precondition(Field& inverse) const;
@@ -67,6 +72,7 @@ private:
   std::vector<Tensor> edge_;
   Field laplace_, membrane_;          // per neighbour: that weight for N = 1, and for the present membrane force
   Field area_, seed_;                 // per vertex
+  Field crease_, crease_force_;       // per vertex: heights w0, and the force that pulls towards them
   std::vector<bool> resolved_;        // whether a vertex is inside the mesh and its edges are short enough
   std::vector<std::int32_t> active_;  // vertices that may have a height
   std::vector<Tensor> strain_;        // per vertex

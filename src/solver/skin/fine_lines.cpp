@@ -47,11 +47,13 @@ struct FineLines::Implementation
   {
   }
 
-  void find(const Vertices& vertices)
+  // Returns whether the heights are in equilibrium.
+  bool find(const Vertices& vertices)
   {
     const double begin = thread_seconds();
-    film.solve(vertices, found);
+    const bool settled = film.solve(vertices, found) < FilmEquilibrium::most_iterations;
     seconds = thread_seconds() - begin;
+    return settled;
   }
 
   void run()
@@ -92,6 +94,15 @@ struct FineLines::Implementation
       skin.vertices[v] = { { at.x, at.y, at.z } };
       skin.normals[v++] = { { normal.x, normal.y, normal.z } };
     }
+  }
+
+  // Moves the vertices by the heights of lines.
+  void raise(SkinState& skin) const
+  {
+    for (std::size_t v = 0; v < skin.vertices.size(); ++v)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        skin.vertices[v][axis] += skin.line_height[v] * skin.normals[v][axis];
+    surface_normals(model->skin.triangles, skin.vertices, skin.normals);
   }
 };
 
@@ -137,10 +148,24 @@ void FineLines::add_to(SkinState& skin, bool wait)
     self_->find(skin.vertices);
     skin.line_height = self_->found;
   }
-  for (std::size_t v = 0; v < skin.vertices.size(); ++v)
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      skin.vertices[v][axis] += skin.line_height[v] * skin.normals[v][axis];
-  surface_normals(self_->model->skin.triangles, skin.vertices, skin.normals);
+  self_->raise(skin);
+}
+
+void FineLines::add_settled(SkinState& skin)
+{
+  constexpr int most_frames = 12;
+  self_->found.clear();
+  self_->place(skin);
+  bool settled = false;
+  double seconds = 0;
+  for (int frame = 0; frame < most_frames && !settled; ++frame)
+  {
+    settled = self_->find(skin.vertices);
+    seconds += self_->seconds;
+  }
+  self_->seconds = seconds;
+  skin.line_height = self_->found;
+  self_->raise(skin);
 }
 
 void FineLines::reset()
