@@ -51,11 +51,22 @@ TEST(FollowHead, MovesThePlacesOfTheShippedScene)
                &crop = named(moved.constraints, "lateral_orbit_left").crop;
   const Vector3d middle = (to_vector(before.lower) + to_vector(before.upper)) / 2;
   EXPECT_LT(((to_vector(crop.lower) + to_vector(crop.upper)) / 2 - head.moved(middle)).norm(), 1e-9);
+  // each side of a region without end goes along with the face beside it: the fornix of the vestibule as the upper jaw,
+  // although the middle of what lies above it is in the forehead, and of what lies below it in the chin
+  const auto fornix = [&](const Scene& of, const char* name, bool lower)
+  { return lower ? named(of.constraints, name).crop.lower[2] : named(of.constraints, name).crop.upper[2]; };
+  const double way = head.moved({ 0, 0, -57.5e-3 })[2] + 57.5e-3;
+  ASSERT_GT(std::abs(way - (head.landmark("gn") - Head(shipped(), {}).landmark("gn"))[2]), 4e-3);
+  EXPECT_NEAR(fornix(moved, "face", true) - fornix(scene, "face", true), way, 2e-3);
+  EXPECT_NEAR(fornix(moved, "face_left", false) - fornix(scene, "face_left", false), way, 2e-3);
+  EXPECT_EQ(named(moved.volumes, "tissue").depth_max, named(scene.volumes, "tissue").depth_max);
   // below more tissue it follows the bone inwards
   for (Surface& surface : scene.surfaces)
     if (surface.shape && surface.shape->head)
       surface.shape->tissue = 1.2;
-  const Region deeper = named(following_head(scene).constraints, "lateral_orbit_left").crop;
+  const Scene full = following_head(scene);
+  EXPECT_NEAR(named(full.volumes, "tissue").depth_max, 1.2 * named(scene.volumes, "tissue").depth_max, 1e-12);
+  const Region deeper = named(full.constraints, "lateral_orbit_left").crop;
   EXPECT_NEAR(crop.lower[1] - deeper.lower[1], 1.9e-3, 0.8e-3);
   // the fissure of the mouth and the planes of the grid keep their heights, and there is room below the longer chin
   const auto fissure = head.part("fissure", 3e-3).vertices;

@@ -24,13 +24,18 @@ public:
       move(p);
   }
 
-  /// Moves a region as its middle moves, where a region without end ends at the face. A box of nodes at a bone also
-  /// goes along with the bone's depth below the skin.
+  /// Moves a box as its middle moves; a box of nodes at a bone also goes along with the bone's depth below the skin. Of
+  /// a region without end each side moves by itself.
   void move(Region& region, bool at_bone = false) const
   {
-    const Vector3d middle = middle_of(region), size = to_vector(region.upper) - to_vector(region.lower);
+    if ((to_vector(region.upper) - to_vector(region.lower)).maxCoeff() > 1)
+    {
+      move_sides(region, [](double way) { return way; });
+      return;
+    }
+    const Vector3d middle = middle_of(region);
     Vector3d to = middle;
-    if (at_bone && size.maxCoeff() < 1)
+    if (at_bone)
       to += head_.bone_shift(middle);
     const Vector3d by = head_.moved(to) - middle;
     for (int a = 0; a < 3; ++a)
@@ -40,21 +45,10 @@ public:
     }
   }
 
-  /// Moves each side of a region in whole steps. Each goes where its own middle goes; two that are close to each other
-  /// go where the region's middle goes, because rounding could change their distance by as much as they are apart.
+  /// Moves each side of a region in whole steps.
   void move_sides(Region& region) const
   {
-    const Vector3d middle = middle_of(region), size = to_vector(region.upper) - to_vector(region.lower);
-    for (int a = 0; a < 3; ++a)
-      for (Vector3* corner : { &region.lower, &region.upper })
-      {
-        double& side = (*corner)[a];
-        Vector3d at = middle;
-        if (size[a] > narrow)
-          at[a] = side;
-        if (std::isfinite(side))
-          side += step * std::round((head_.moved(at) - at)[a] / step);
-      }
+    move_sides(region, [](double way) { return step * std::round(way / step); });
   }
 
   void move_sides(Shape& box) const
@@ -74,6 +68,26 @@ public:
   }
 
 private:
+  /// Moves each side of a region by `moved(way)`, where `way` is that of the side's own middle. Two sides that are
+  /// close to each other go where the region's middle goes, because rounding could change their distance by as much as
+  /// they are apart.
+  template <class Moved>
+  void move_sides(Region& region, const Moved& moved) const
+  {
+    const Vector3d middle = middle_of(region), size = to_vector(region.upper) - to_vector(region.lower);
+    for (int a = 0; a < 3; ++a)
+      for (Vector3* corner : { &region.lower, &region.upper })
+      {
+        double& side = (*corner)[a];
+        Vector3d at = middle;
+        if (size[a] > narrow)
+          at[a] = side;
+        if (std::isfinite(side))
+          side += moved((head_.moved(at) - at)[a]);
+      }
+  }
+
+  /// Middle of the part of a region that lies in the face.
   static Vector3d middle_of(const Region& region)
   {
     const Vector3d lower = to_vector(region.lower).cwiseMax(Vector3d(-0.08, -0.08, -0.13));
@@ -106,7 +120,11 @@ Scene following_head(const Scene& given)
         follower.move(depth.at);
     }
   for (Volume& volume : scene.volumes)
+  {
     follower.move_sides(volume.crop);
+    if (volume.tissue)  // it reaches the bones, which lie deeper below full tissue
+      volume.depth_max *= std::max(1.0, first->shape->tissue);
+  }
   follower.move_sides(scene.skin.crop);
   if (scene.film)
     follower.move(scene.film->crop);
