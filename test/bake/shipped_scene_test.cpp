@@ -284,6 +284,17 @@ TEST(GeneratedHead, BakesWithAllItsMuscles)
   report.measure_muscles = true;
   const Model model = bake(read_scene(source + "/config/head.yaml", options), &report);
   expect_one_piece(report);
+  for (const auto& voxel : model.voxels)
+  {
+    const Vector3 p =
+        transformed(model.to_scene, { (voxel[0] + 0.5) * model.spacing[0], (voxel[1] + 0.5) * model.spacing[1],
+                                      (voxel[2] + 0.5) * model.spacing[2] });
+    if (std::abs(p[1]) < 20e-3 && p[2] > 20e-3 && p[2] < 45e-3)
+    {
+      // bone is 4 mm below the skin, which is at x of at least -7 mm here, and half a voxel's diagonal is 2.6 mm
+      EXPECT_GT(p[0], -14e-3);
+    }
+  }
   ASSERT_EQ(report.muscles.size(), 51u);
   // Straps of half a voxel's thickness depend on where the 64 samples of a voxel lie, which differs between the sides.
   expect_measured_muscles(report, 10 * 27e-9);  // ten voxels
@@ -296,7 +307,10 @@ TEST(GeneratedHead, BakesWithAllItsMuscles)
   for (const ConstraintSurface& surface : model.constraint_surfaces)
     slide_on.push_back(surface.name);
   EXPECT_EQ(slide_on, (std::vector<std::string>{ "skull", "mandible", "eye_left", "eye_right" }));
+  EXPECT_EQ(model.bones.size(), 9u) << "the mandible, the eyeballs, and three parts of the lids of each eye";
 }
+
+// MadeHead and GeneratedHead are checked in the same way where the meshes of a real head are missing.
 
 TEST(RealHead, BakesFromSegmentedMeshes)
 {
