@@ -14,14 +14,15 @@ constexpr std::array<float, 3> gum_colour{ { 0.78F, 0.47F, 0.45F } };
 
 // A row of teeth, from the midline to one side: positions of the borders between teeth along the row, and heights of
 // the cutting edges and of the gums' rim above the corners of the mouth [m]. They are estimates from the dimensions of
-// teeth in textbooks.
+// teeth in textbooks: upper incisors reach 3.5 mm below the upper lip at rest, and the lower lip hides the lower ones.
 struct Row
 {
   std::array<double, 8> borders;
   double edge, rim;
 };
 constexpr Row upper_row{ { 0, 8.6e-3, 15.2e-3, 23e-3, 30e-3, 36.8e-3, 47e-3, 57e-3 }, -2.5e-3, 9.3e-3 };
-constexpr Row lower_row{ { 0, 5.4e-3, 11.3e-3, 18.2e-3, 25.2e-3, 32.3e-3, 43.3e-3, 54e-3 }, -2.7e-3, -11.7e-3 };
+constexpr Row lower_row{ { 0, 5.4e-3, 11.3e-3, 18.2e-3, 25.2e-3, 32.3e-3, 43.3e-3, 54e-3 }, -1.2e-3, -10.2e-3 };
+constexpr double overjet = 3e-3;    // [m] by which the lower row is behind the surface on which the lower lip rests
 constexpr double papilla = 1.8e-3;  // [m] by which the gums reach farther between two teeth
 constexpr double groove = 0.6e-3;   // [m] beside the border of two teeth within which a tooth gets darker
 constexpr float shade = 0.6F;       // brightness of the border itself
@@ -116,6 +117,8 @@ RenderMesh painted_teeth(const TriangleMesh& surface, bool lower, double corner_
     const double edge = up * row.edge + 0.6e-3 * std::pow(aside, 4) + std::min(deepest_cut, cut);
     const double height = std::max(edge, up * (p[2] - corner_height));
     p[2] = static_cast<float>(corner_height + up * height);
+    if (lower)
+      p[0] -= static_cast<float>(overjet);
     const bool is_gum = height > up * row.rim - papilla * aside * aside;
     const double light = is_gum ? 1 : shade + (1 - shade) * std::clamp(from_border / groove, 0.0, 1.0);
     std::array<float, 3> colour = is_gum ? gum_colour : teeth_colour;

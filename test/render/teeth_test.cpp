@@ -62,8 +62,15 @@ TEST(Teeth, are_painted_between_gums_and_their_edges)
     const auto gum = at(mesh, 4e-3, up * 15e-3);
     EXPECT_GT(gum.first[0], 1.4F * gum.first[1]);
     EXPECT_EQ(gum.second, body_label);
+    float lowest = 1, front = -1;
     for (const auto& p : mesh.vertices)
-      EXPECT_GT(up * p[2], lower ? 2.6e-3 : -2.6e-3);
+    {
+      lowest = std::min(lowest, static_cast<float>(up) * p[2]);
+      front = std::max(front, p[0]);
+    }
+    EXPECT_NEAR(lowest, lower ? 1.2e-3 : -2.5e-3, 0.1e-3);
+    // where the rows overlap, the lower one is behind the upper one
+    EXPECT_NEAR(front, lower ? 17e-3 : 20e-3, 0.1e-3);
   }
 }
 
