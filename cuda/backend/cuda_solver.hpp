@@ -55,6 +55,7 @@ private:
   void kick(StepArguments& g, double seconds) const;
   void stage(const StepPlan& plan, const std::vector<float>& relaxation, PlanSlot& slot, StepArguments& g);
   void step(StepArguments& g, int begin, int end);
+  bool stays() const;
   void do_steps(const StepPlan& plan, StepArguments& g, int begin, int end);
   void rest();
   /// Computes the internal forces at displacements `at`. `springs`: contact and shells, even if switched off, are

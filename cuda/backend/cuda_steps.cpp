@@ -110,9 +110,9 @@ void CudaSolver::do_steps(const StepPlan& plan, StepArguments& g, int begin, int
   const auto running = device_.running_parts();
   std::vector<DevicePart*> pushing;
   for (DevicePart* const part : running)
-    if (!launch_.patches || part->has_kernels())
+    if (!launch_.patches || part->has_kernels(stays()))
       pushing.push_back(part);
-  if (launch_.patches && !account_ && !device_.loads().follow() && pushing.empty())
+  if (stays() && pushing.empty())
     return step(g, begin, end);
   for (int s = begin; s < end; ++s)
   {
@@ -139,6 +139,9 @@ void CudaSolver::do_steps(const StepPlan& plan, StepArguments& g, int begin, int
   }
 }
 
+// Whether patches can make many steps per launch.
+bool CudaSolver::stays() const { return launch_.patches && !account_ && !device_.loads().follow(); }
+
 double CudaSolver::run(const StepPlan& plan)
 {
   PlanSlot& slot = slots_[plans_ % plan_slots];
@@ -161,6 +164,10 @@ double CudaSolver::run(const StepPlan& plan)
     if (elapsed[step] > 0 && (relaxation.empty() || step + 1 == plan.steps))
       device_.viscosity().relax(g, u_[present_].data(), u_[1 - present_].data(), elapsed[step], stream_);
   };
+  if (!stays())
+    g.touch.in_patches = {};
+  for (const DevicePart* const part : device_.running_parts())
+    part->prepare(g, plan.steps, stream_);
   int done = 0;
   if (still_moved_ || plan.first_kick != plan.dt)
   {
@@ -223,7 +230,7 @@ void CudaSolver::queue_forces(float4* at, const float* activation, float4* out, 
   present_ = present;
   float* const none[3] = { nullptr, nullptr, nullptr };
   for (const auto& part : device_.parts())
-    if (springs && (!launch_.patches || part->has_kernels()))
+    if (springs && (!launch_.patches || part->has_kernels(false)))
     {
       part->find_pushes(g, 0, stream_);
       part->push(g, 0, none, stream_);

@@ -83,6 +83,7 @@ public:
   const std::vector<std::unique_ptr<DevicePart>>& parts() const { return parts_; }
   std::vector<DevicePart*> running_parts() const;
   DeviceLoads& loads() { return loads_; }
+  const DeviceLoads& loads() const { return loads_; }
   DeviceViscosity& viscosity() { return viscosity_; }
   const DeviceViscosity& viscosity() const { return viscosity_; }
 

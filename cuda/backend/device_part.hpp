@@ -35,8 +35,11 @@ public:
   /// ContactArguments::ways. Empty if there are no bodies. `bones`: poses of the bones at the start of each step.
   virtual std::vector<float> motion(const std::vector<std::vector<RigidTransform>>& /*bones*/) const { return {}; }
 
-  /// Whether the functions for strips are used for patches as well. Each step is then a launch of its own.
-  virtual bool has_kernels() const { return false; }
+  /// Called before the steps of a plan.
+  virtual void prepare(const StepArguments& /*g*/, int /*steps*/, cudaStream_t /*stream*/) const {}
+  /// Whether the functions for strips are used for patches as well. Each step is then a launch of its own. `stays`:
+  /// whether patches could make many steps per launch otherwise.
+  virtual bool has_kernels(bool /*stays*/) const { return false; }
   // Functions for strips:
   /// Finds the forces on points at the start of a step.
   virtual void find_pushes(const StepArguments& g, int step, cudaStream_t stream) const = 0;

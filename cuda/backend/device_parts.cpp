@@ -19,7 +19,7 @@ std::vector<std::unique_ptr<DevicePart>> device_parts(const Model& model, const 
   if (!model.shells.empty())
     parts.push_back(std::make_unique<DeviceShell>(model, cut, device_node));
   if (!model.self_contacts.empty())
-    parts.push_back(std::make_unique<DeviceTissueContact>(model, discretisation, device_node));
+    parts.push_back(std::make_unique<DeviceTissueContact>(model, discretisation, cut, device_node));
   return parts;
 }
 
@@ -32,6 +32,11 @@ PartRoom room_for_parts(const Model& model, const VoxelPatches& patches, const s
     all.threads = patches.most_voxels + all.room.contact_points;
   if (!model.shells.empty())
     ShellTables(model, ShellMesh(model), patches, device_node).add_room(all);
+  all.room.touch_vertices = most_touching_vertices(model, patches);
+  // Pairs have threads of their own as far as possible. A patch has about as many pairs of its own vertices as of those
+  // that they face, and a margin.
+  if (all.room.touch_vertices > 0)
+    all.threads = std::max(all.threads, patches.most_voxels + touch_ahead * all.room.touch_vertices);
   return all;
 }
 
@@ -39,13 +44,16 @@ BoundWork bound_work(const Model& model)
 {
   // Cost of a point relative to a voxel without effects. It was chosen to minimise the wall time per step of the
   // generated head.
-  constexpr float touch_cost = 2;
+  constexpr float touch_cost = 2, pair_cost = 4;
   BoundWork work;
-  if (!model.contacts.empty())
+  if (!model.contacts.empty() || !model.self_contacts.empty())
     work.cost.assign(model.voxels.size(), 0);
   for (const Contact& contact : model.contacts)
     for (std::size_t p = 0; p < contact.points.size(); ++p)
       work.cost[contact.binding.voxel[p]] += contact.area[p] > 0 ? touch_cost : 0;
+  for (const SelfContact& contact : model.self_contacts)
+    for (const std::int32_t voxel : contact.binding.voxel)
+      work.cost[voxel] += pair_cost;
   if (!model.shells.empty())
     work.beside = voxels_beside(model, ShellMesh(model));
   return work;

@@ -1,8 +1,10 @@
 #include "cuda/backend/device_tissue_contact.hpp"
 
+#include "cuda/backend/device_model.hpp"
 #include "cuda/kernels/tissue_contact_kernels.hpp"
 #include "frontalis/physics/surface_vertex.hpp"
 
+#include <algorithm>
 #include <numeric>
 
 namespace frontalis
@@ -37,7 +39,24 @@ std::vector<T> values_of(const DeviceArray<T>& array)
 
 }  // namespace
 
-DeviceTissueContact::DeviceTissueContact(const Model& model, const Discretisation& discretisation,
+std::uint32_t most_touching_vertices(const Model& model, const VoxelPatches& patches)
+{
+  if (model.self_contacts.empty() || patches.patches.size() > patches.blocks)
+    return 0;
+  std::vector<std::uint32_t> in_voxel(model.voxels.size(), 0);
+  for (const auto& vertex : TouchingSurface(model).vertices)
+    ++in_voxel[vertex.voxel];
+  std::uint32_t most = 0;
+  for (const Patch& patch : patches.patches)
+  {
+    const auto voxel = patches.voxel.begin() + patch.voxel_begin;
+    most = std::max(most, std::accumulate(voxel, voxel + patch.voxels, 0u,
+                                          [&](std::uint32_t sum, std::uint32_t e) { return sum + in_voxel[e]; }));
+  }
+  return most;
+}
+
+DeviceTissueContact::DeviceTissueContact(const Model& model, const Discretisation& discretisation, const VoxelCut& cut,
                                          const std::vector<std::uint32_t>& device_node)
     : model_(model),
       device_node_(device_node),
@@ -50,7 +69,7 @@ DeviceTissueContact::DeviceTissueContact(const Model& model, const Discretisatio
       joined_sources_(tables_.joined_sources)
 {
   const std::size_t count = tables_.vertices.size();
-  for (auto* const words : { &moved_, &normal_, &searched_ })
+  for (auto* const words : { &moved_, &searched_, &placed_, &normal_ })
     *words = DeviceArray<float4>(count);
   change_ = DeviceArray<float4>(all_.rubs ? count : 0);
   dual_ = DeviceArray<float4>(2 * count);
@@ -66,7 +85,7 @@ DeviceTissueContact::DeviceTissueContact(const Model& model, const Discretisatio
   all_.triangles = triangles_.data();
   all_.joined_begin = joined_begin_.data();
   all_.joined_sources = joined_sources_.data();
-  all_.moved = moved_.data();
+  all_.moved = all_.placed = moved_.data();
   all_.normal = normal_.data();
   all_.change = change_.data();
   all_.searched = searched_.data();
@@ -78,6 +97,11 @@ DeviceTissueContact::DeviceTissueContact(const Model& model, const Discretisatio
   all_.dual = dual_.data();
   all_.sums = sums_.data();
   all_.stored = stored_.data();
+  if (cut.patches && cut.part_room.room.touch_vertices > 0)
+  {
+    in_patches_ = std::make_unique<DeviceTouchPatches>(TouchPatchTables(tables_, *cut.patches));
+    all_.in_patches = in_patches_->view();
+  }
   reset();
 }
 
@@ -87,13 +111,15 @@ void DeviceTissueContact::list_arrays(ArrayList& list)
   list.add(effect, "vertices", vertices_.bytes() + points_.bytes() + joined_begin_.bytes() + joined_sources_.bytes());
   list.add(effect, "triangles", triangles_.bytes());
   list.add(effect, "forces", dual_.bytes() + sums_.bytes() + stored_.bytes());
-  for (auto* const words : { &moved_, &normal_, &change_, &searched_ })
+  list.add(effect, "places", placed_.bytes() + normal_.bytes() + change_.bytes());
+  list.add(effect, "grid", heads_.bytes() + next_.bytes());
+  if (in_patches_)
+    list.add(effect, "patches", in_patches_->bytes());
+  for (auto* const words : { &moved_, &searched_ })
     list_state(list, effect, "places", *words);
   list_state(list, effect, "pairs", pairs_);
   list_state(list, effect, "sums", lost_);
   list_state(list, effect, "grid", control_);
-  list_state(list, effect, "grid", heads_);
-  list_state(list, effect, "grid", next_);
   list.add_state(effect, "sums", opened_);
 }
 
@@ -106,16 +132,22 @@ void DeviceTissueContact::run(EffectSet running)
 
 void DeviceTissueContact::reset()
 {
-  for (auto* const words : { &moved_, &normal_, &change_, &searched_ })
+  for (auto* const words : { &moved_, &searched_ })
     words->clear();
   lost_.clear();
-  sums_.clear();
-  dual_.clear();
-  fill(pairs_, TouchPair{ -1, 0, 0, 0, { 0, 0, 0 }, 0 });
+  fill(pairs_, TouchPair{ -1, 0, 0, 0, { 0, 0, 0 }, -1 });
   fill(control_, tables_.rest);
-  fill(heads_, -1);
-  fill(next_, -1);
   opened_[0] = 0;
+}
+
+void DeviceTissueContact::prepare(const StepArguments& g, int steps, cudaStream_t stream) const
+{
+  if (tables_.vertices.empty())
+    return;
+  TissueContactArguments look = all_;
+  look.placed = placed_.data();
+  look.in_patches = g.touch.in_patches;
+  require(launch_touch_search(look, g.u[g.first], g.v, g.dt_exact, steps, stream), "searching for contact");
 }
 
 void DeviceTissueContact::find_pushes(const StepArguments& g, int /*step*/, cudaStream_t stream) const
@@ -147,8 +179,8 @@ void DeviceTissueContact::add_energies(const std::vector<double> (&u)[3], const 
   const DeviceArray<TouchPair> pairs = copy_of(pairs_);
   const DeviceArray<double> lost = copy_of(lost_);
   TissueContactArguments look = all_;
-  look.looks_only = true;
-  look.moved = moved.data();
+  look.measures = true;
+  look.moved = look.placed = moved.data();
   look.normal = normal.data();
   look.change = change.data();
   look.pairs = pairs.data();

@@ -62,6 +62,18 @@ inline TouchTables::TouchTables(const Model& model, const Discretisation& discre
     TouchTriangle to{};
     std::copy(from.vertex.begin(), from.vertex.end(), to.vertex);
     std::copy(from.neighbour.begin(), from.neighbour.end(), to.neighbour);
+    const TouchVertex* corner[3];
+    for (int i = 0; i < 3; ++i)
+    {
+      corner[i] = &vertices[from.vertex[i]];
+      to.per_area[i] = corner[i]->rest.w;
+    }
+    const float4 &a = corner[0]->rest, &b = corner[1]->rest, &c = corner[2]->rest;
+    to.x = a.x;
+    to.y = a.y;
+    to.z = a.z;
+    const float sides[2][3] = { { b.x - a.x, b.y - a.y, b.z - a.z }, { c.x - a.x, c.y - a.y, c.z - a.z } };
+    std::memcpy(to.side, sides, sizeof sides);
     triangles.push_back(to);
     const auto at = [&](std::size_t i) { return surface.vertices[from.vertex[i]].rest; };
     const auto centre = (1.0 / 3) * (at(0) + at(1) + at(2));
@@ -80,7 +92,6 @@ inline TouchTables::TouchTables(const Model& model, const Discretisation& discre
   for (std::size_t axis = 0; axis < 3; ++axis)
     sizes.inverse_spacing[axis] = static_cast<float>(1 / model.spacing[axis]);
   sizes.per_newton = static_cast<float>(touch_units_in_force / std::max(stiffest * surface.edge, 1e-12));
-  rest.next = TouchStage::sort;
   const auto largest = static_cast<float>(radius);
   std::memcpy(&rest.radius, &largest, sizeof largest);
 }

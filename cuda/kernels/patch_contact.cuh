@@ -19,6 +19,7 @@ struct PatchMemory
   float4* push;         // per point of contact: force on it, and its coordinates
   float4* shell;        // displacements of vertices of shells, and forces of triangles
   uint4* tables;        // see PatchShell
+  float4* touch;        // vertices that may touch other tissue; see patch_touch.cuh
   // smallest distance that put_pushes() found, as bits; patches use two entries in turn, because slow threads may still
   // read the entry of the previous patch
   std::uint32_t* least;
@@ -31,7 +32,8 @@ __device__ __forceinline__ PatchMemory patch_memory(const StepLaunch& launch)
   float4* const push = all + launch.most_halo + launch.most_nodes;
   float4* const shell = push + (has<With, Effects::contact> ? 2 * launch.room.contact_points : 0);
   float4* const tables = shell + (has<With, Effects::shell> ? launch.room.shell_words : 0);
-  float4* const least = tables + (has<With, Effects::shell> ? launch.room.table_words : 0);
+  float4* const touch = tables + (has<With, Effects::shell> ? launch.room.table_words : 0);
+  float4* const least = touch + (has<With, Effects::touch> ? touch_room * launch.room.touch_vertices : 0);
   float* const v = reinterpret_cast<float*>(least + (has<With, Effects::contact> ? 1 : 0));
   return { all,
            { v, v + launch.most_nodes, v + 2 * launch.most_nodes },
@@ -40,6 +42,7 @@ __device__ __forceinline__ PatchMemory patch_memory(const StepLaunch& launch)
            push,
            shell,
            reinterpret_cast<uint4*>(tables),
+           touch,
            reinterpret_cast<std::uint32_t*>(least) };
 }
 

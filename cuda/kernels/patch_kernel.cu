@@ -9,6 +9,9 @@ namespace
 
 const void* kernel(Effects effects)
 {
+  if ((effects & Effects::touch) == Effects::touch)
+    return (effects & (Effects::contact | Effects::shell)) == Effects::none ? touch_patch_kernel(effects)
+                                                                            : whole_patch_kernel(effects);
   if ((effects & Effects::shell) == Effects::shell)
     return shell_patch_kernel(effects);
   if ((effects & Effects::contact) == Effects::contact)
@@ -48,7 +51,8 @@ cudaError_t launch_patches(const StepArguments& arguments, const StepLaunch& lau
   void* parameters[] = { const_cast<StepArguments*>(&arguments), const_cast<StepLaunch*>(&launch) };
   const void* const kernel = cuda::kernel(launch.effects);
   const dim3 grid(launch.blocks), block(launch.threads);
-  if (arguments.step_end - arguments.step_begin > 1)
+  // Patches that exchange data within a launch must run at the same time.
+  if (arguments.step_end - arguments.step_begin > 1 || arguments.touch.in_patches.patches != nullptr)
     return cudaLaunchCooperativeKernel(kernel, grid, block, parameters, launch.shared_bytes, stream);
   return cudaLaunchKernel(kernel, grid, block, parameters, launch.shared_bytes, stream);
 }

@@ -3,6 +3,7 @@
 #include "cuda/kernels/element_stress.cuh"
 #include "cuda/kernels/node_tasks.cuh"
 #include "cuda/kernels/patch_shell.cuh"
+#include "cuda/kernels/patch_touch.cuh"
 
 #include <utility>
 
@@ -13,40 +14,7 @@ namespace cuda
 
 // A block of threads keeps its patch, including the halo, in shared memory for all steps of a launch. In a step each
 // thread computes a voxel, writes the forces on its corners to shared memory, and then updates a node. Between steps,
-// blocks exchange only border nodes.
-// A displacement and its step number are written as one word of 16 bytes, so that a reader waits for exactly the data
-// that it needs, without fences or barriers between blocks. Two buffers suffice: neighbouring patches read from each
-// other, so that a writer is at most one step ahead of its readers.
-
-/// Step number, stored in place of the inverse mass. Its highest bit is set, which distinguishes it from an inverse
-/// mass.
-__device__ __forceinline__ std::uint32_t mark(const StepArguments& g, std::int32_t step)
-{
-  return 0x80000000u | (g.steps_before + static_cast<std::uint32_t>(step - g.step_begin));
-}
-
-__device__ __forceinline__ void send(float4* to, const float* u, std::uint32_t mark)
-{
-  asm volatile(
-      "{ .reg .b64 low, high; .reg .b128 all; mov.b64 low, {%1, %2}; mov.b64 high, {%3, %4};"
-      " mov.b128 all, {low, high}; st.relaxed.gpu.global.b128 [%0], all; }" ::"l"(to),
-      "r"(__float_as_uint(u[0])), "r"(__float_as_uint(u[1])), "r"(__float_as_uint(u[2])), "r"(mark)
-      : "memory");
-}
-
-__device__ __forceinline__ float4 receive(const float4* from, std::uint32_t mark)
-{
-  std::uint32_t word[4];
-  do
-    asm volatile(
-        "{ .reg .b64 low, high; .reg .b128 all; ld.relaxed.gpu.global.b128 all, [%4];"
-        " mov.b128 {low, high}, all; mov.b64 {%0, %1}, low; mov.b64 {%2, %3}, high; }"
-        : "=r"(word[0]), "=r"(word[1]), "=r"(word[2]), "=r"(word[3])
-        : "l"(from)
-        : "memory");
-  while (word[3] != mark);
-  return make_float4(__uint_as_float(word[0]), __uint_as_float(word[1]), __uint_as_float(word[2]), 0);
-}
+// blocks exchange only border nodes (patch_exchange.cuh).
 
 /// Data of a voxel without the displacements of its corners.
 struct VoxelFetch
@@ -224,6 +192,8 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
   }
   if (threadIdx.x < 25)
     memory.force[threadIdx.x * memory.width + launch.most_voxels] = 0;
+  if (has<With, Effects::touch>)
+    clear_touch(launch, memory);
   for (std::int32_t step = g.step_begin; step < g.step_end; ++step)
   {
     const int present = (g.first + step - g.step_begin) & 1;
@@ -240,6 +210,9 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
       PatchContact contact{};
       ContactWatch watch{};
       ShellStep shell{};
+      TouchStep touch{};
+      if (has<With, Effects::touch>)
+        touch = fetch_touch(g, launch, p, step);
       if (has<With, Effects::contact>)
       {
         if (!has<With, Effects::shell> || g.contact.patches != nullptr)
@@ -272,6 +245,8 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
         look_at_watched(g, contact, memory, watch);
       if (has<With, Effects::shell>)
         place_shell(shell, memory);
+      if (has<With, Effects::touch>)
+        place_touch(g, touch, memory);
       for (std::uint32_t v = threadIdx.x; v < patch.voxels; v += threads)
       {
         if (v != threadIdx.x)
@@ -283,9 +258,13 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
         else
           put_forces<With>(g, voxel, activation, relaxes, with_bound, memory, v);
       }
+      if (has<With, Effects::touch>)
+        find_touch(g, touch, memory);
       end_voxels<With>(g, contact, watch, memory, step, memory.least + round, until[turn]);
       if (has<With, Effects::shell>)
         add_shell(g, shell, memory);
+      if (has<With, Effects::touch>)
+        add_touch(g, touch, memory);
       const bool last = step + 1 == g.step_end;
       for (std::uint32_t n = threadIdx.x; n < patch.nodes; n += threads)
         step_patch_node<With>(g, memory, patch.first_node + n, filled + n, launch, n < patch.border, last,
@@ -326,6 +305,8 @@ const void* sliding_patch_kernel(Effects effects);
 const void* friction_patch_kernel(Effects effects);
 const void* contact_patch_kernel(Effects effects);
 const void* shell_patch_kernel(Effects effects);
+const void* touch_patch_kernel(Effects effects);
+const void* whole_patch_kernel(Effects effects);
 
 }  // namespace cuda
 }  // namespace frontalis

@@ -4,6 +4,7 @@
 #include "frontalis/physics/element/node_motion.hpp"
 #include "cuda/kernels/contact_arguments.hpp"
 #include "cuda/kernels/shell_arguments.hpp"
+#include "cuda/kernels/tissue_contact_arguments.hpp"
 #include "cuda/partition/voxel_patches.hpp"
 #include "cuda/partition/voxel_strips.hpp"
 
@@ -201,6 +202,7 @@ struct StepArguments : physics::Kick<float>
   std::uint32_t steps_before;  ///< number of steps in earlier launches of this solver
   ContactArguments contact;    ///< contact with bodies
   ShellArguments shell;
+  TissueContactArguments touch;  ///< contact of tissue with itself, in patches
 };
 
 /// Threads per block of the strip kernel. Each warp processes one strip.
@@ -256,7 +258,8 @@ enum class Effects : std::uint16_t
   friction = 32,        ///< friction of sliding nodes
   contact = 64,         ///< contact with bodies, in patches; always set together with all effects of nodes
   shell = 128,          ///< layers that are shells, in patches; always set together with contact
-  added = 256           ///< in strips, instead of fibres: AddedStress
+  added = 256,          ///< in strips, instead of fibres: AddedStress
+  touch = 512           ///< contact of tissue with itself, in patches; always set together with all effects of nodes
 };
 constexpr int voxel_sets = 8;  ///< number of sets of voxel effects, which are the first three bits
 constexpr Effects operator|(Effects a, Effects b) { return static_cast<Effects>(int(a) | int(b)); }
@@ -271,7 +274,7 @@ inline constexpr Effects of_nodes = Effects::sliding | Effects::tasks | Effects:
 template <Effects Set>
 inline constexpr Effects lawless_part = static_cast<Effects>(int(Set) & ~int(Effects::general_element));
 template <Effects Set>
-inline constexpr Effects plain_part = Set&(of_nodes | Effects::contact | Effects::shell);
+inline constexpr Effects plain_part = Set&(of_nodes | Effects::contact | Effects::shell | Effects::touch);
 constexpr Effects voxel_part(Effects set)
 {
   return set & (Effects::fibres | Effects::viscosity | Effects::general_element);
@@ -281,6 +284,7 @@ constexpr Effects voxel_part(Effects set)
 struct PatchRoom
 {
   std::uint32_t contact_points;
+  std::uint32_t touch_vertices;  ///< vertices that may touch other tissue; 0: patches do not find these forces
   // The following members count words of 16 bytes.
   std::uint32_t shell_words;  ///< displacements of vertices, and forces of triangles
   std::uint32_t table_words;  ///< tables of shells, of all patches of a block
@@ -311,13 +315,13 @@ constexpr int strip_blocks(Effects effects)
 }
 
 /// Shared memory of a block [bytes]. It holds displacements of halo and own nodes, velocities of own nodes, forces on
-/// the corners of voxels and their stiffness bounds, points of contact, and shells.
+/// the corners of voxels and their stiffness bounds, points and vertices of contact, and shells.
 constexpr std::size_t patch_bytes(std::size_t most_voxels, std::size_t most_halo, std::size_t most_nodes,
                                   const PatchRoom& room = {})
 {
-  const bool any = room.contact_points > 0 || room.shell_words > 0;
-  return sizeof(float4) *
-             (most_halo + most_nodes + (any ? 2 * room.contact_points + room.shell_words + room.table_words + 1 : 0)) +
+  const bool any = room.contact_points > 0 || room.shell_words > 0 || room.touch_vertices > 0;
+  const std::size_t words = 2 * room.contact_points + room.shell_words + room.table_words;
+  return sizeof(float4) * (most_halo + most_nodes + (any ? words + touch_room * room.touch_vertices + 1 : 0)) +
          3 * sizeof(float) * most_nodes + 25 * sizeof(float) * (most_voxels + 1);
 }
 

@@ -10,7 +10,7 @@ namespace frontalis
 namespace cuda
 {
 
-// The work of one thread in each kernel of contact of tissue with itself. One thread serves one vertex.
+// Contact of tissue with itself: the work of one thread, which serves one vertex.
 
 using Place = physics::Vec3<float>;
 
@@ -29,14 +29,20 @@ struct TouchView
   }
   __device__ __forceinline__ Place apart(std::int32_t v, std::int32_t w) const
   {
-    return rest_apart(v, w) + (place(c.moved[v]) - place(c.moved[w]));
+    return rest_apart(v, w) + (place(c.placed[v]) - place(c.placed[w]));
   }
   __device__ __forceinline__ Place normal(std::int32_t v) const { return place(c.normal[v]); }
+  __device__ __forceinline__ Place change(int, std::int32_t v) const { return place(c.change[v]); }
   __device__ __forceinline__ float overlap(std::int32_t v) const { return c.vertices[v].overlap; }
   __device__ __forceinline__ std::int32_t contact_of(std::int32_t v) const { return c.vertices[v].contact; }
   __device__ __forceinline__ const std::int32_t* corners(std::int32_t t) const { return c.triangles[t].vertex; }
   __device__ __forceinline__ const std::int32_t* neighbours(std::int32_t t) const { return c.triangles[t].neighbour; }
   __device__ __forceinline__ bool placed(std::int32_t) const { return true; }
+  __device__ __forceinline__ const TouchTriangle& record(std::int32_t t) const { return c.triangles[t]; }
+  __device__ __forceinline__ physics::SurfaceTriangle<float> triangle(std::int32_t t) const
+  {
+    return touch_search::triangle_of(*this, t);
+  }
   __device__ __forceinline__ float edge() const { return c.edge; }
   __device__ __forceinline__ bool joined(std::int32_t v, std::int32_t w) const
   {
@@ -56,156 +62,122 @@ struct TouchView
   const TissueContactArguments& c;
 };
 
-/// Places a vertex at the displacements u of device nodes, and clears its forces. Returns how far it has moved since
-/// the latest search [m]. Calls wait(), which waits for the preceding kernel, once constant data have been loaded.
+/// Vertex v where the displacements of the corners of its voxel put it; see physics::surface_vertex().
+template <class Corners>
+__device__ __forceinline__ physics::SurfaceVertex<float> touching_vertex(const TissueContactArguments& c,
+                                                                         const float4& at, const TouchVertex& vertex,
+                                                                         const Corners& corners)
+{
+  const Place tangent[2] = { place(vertex.tangent[0]), place(vertex.tangent[1]) };
+  return physics::surface_vertex(physics::SideWeights<float>(at.x, at.y, at.z), tangent,
+                                 Place{ c.inverse_spacing[0], c.inverse_spacing[1], c.inverse_spacing[2] }, corners);
+}
+
+/// Places a vertex at the displacements u of device nodes, and clears its forces. Calls wait(), which waits for the
+/// preceding kernel, once constant data have been loaded.
 template <class Wait>
-__device__ __forceinline__ float place_touching(const TissueContactArguments& c, std::uint32_t v, const float4* u,
-                                                const Wait& wait)
+__device__ __forceinline__ void place_touching(const TissueContactArguments& c, std::uint32_t v, const float4* u,
+                                               const Wait& wait)
 {
   const float4 at = c.bound.coordinates[v];
   const uint4 low = c.bound.nodes[2 * v], high = c.bound.nodes[2 * v + 1];
   const std::uint32_t corner[8] = { low.x, low.y, low.z, low.w, high.x, high.y, high.z, high.w };
-  const Place tangent[2] = { place(c.vertices[v].tangent[0]), place(c.vertices[v].tangent[1]) };
   wait();
-  const auto vertex = physics::surface_vertex(physics::SideWeights<float>(at.x, at.y, at.z), tangent,
-                                              Place{ c.inverse_spacing[0], c.inverse_spacing[1], c.inverse_spacing[2] },
-                                              [&](int two, Place& first, Place& second)
-                                              {
-                                                first = place(u[corner[2 * two]]);
-                                                second = place(u[corner[2 * two + 1]]);
-                                              });
+  const auto vertex = touching_vertex(c, at, c.vertices[v],
+                                      [&](int two, Place& first, Place& second)
+                                      {
+                                        first = place(u[corner[2 * two]]);
+                                        second = place(u[corner[2 * two + 1]]);
+                                      });
   if (c.change != nullptr)
     c.change[v] = word(vertex.displacement - place(c.moved[v]));
-  c.moved[v] = word(vertex.displacement);
+  c.placed[v] = word(vertex.displacement);
   c.normal[v] = word(vertex.normal);
   c.dual[2 * v] = word(vertex.dual[0]);
   c.dual[2 * v + 1] = word(vertex.dual[1]);
   c.sums[v] = TouchSum{};
-  return norm(vertex.displacement - place(c.searched[v]));
 }
 
-/// Empties buckets of the grid before triangles are sorted.
-__device__ __forceinline__ void clear_grid(const TissueContactArguments& c, std::uint32_t first, std::uint32_t stride)
-{
-  for (std::uint32_t b = first; b <= c.bucket_mask; b += stride)
-    c.heads[b] = -1;
-}
-
-struct GridCell
-{
-  __device__ __forceinline__ GridCell(const Place& p, float edge)
-      : x(index(p.x, edge)), y(index(p.y, edge)), z(index(p.z, edge))
-  {
-  }
-  // Coordinates that are not finite count as cell 0.
-  static __device__ __forceinline__ std::int32_t index(float x, float edge)
-  {
-    return fabsf(x) < 1e6F * edge ? static_cast<std::int32_t>(floorf(x / edge)) : 0;
-  }
-  std::int32_t x, y, z;
-};
-
-__device__ __forceinline__ Place place_of(const TissueContactArguments& c, std::int32_t v)
-{
-  return place(c.vertices[v].rest) + place(c.moved[v]);
-}
-
-/// Edge of the grid's cells [m]. The distance of a corner from its triangle's centre has grown at most by twice the
-/// largest displacement since that distance was measured.
-__device__ __forceinline__ float cell_edge(const TissueContactArguments& c)
-{
-  return float(touch_search::margin) * (float(touch_search::reach) * c.edge + __uint_as_float(c.control->radius) +
-                                        2 * __uint_as_float(c.control->moved));
-}
-
-/// Sorts a triangle into the cell of its centre.
-__device__ __forceinline__ void sort_triangle(const TissueContactArguments& c, std::uint32_t t, float cell)
-{
-  const TouchView view{ c };
-  const std::int32_t* const corner = view.corners(static_cast<std::int32_t>(t));
-  const Place b = view.apart(corner[1], corner[0]), d = view.apart(corner[2], corner[0]), centre = (1.0F / 3) * (b + d);
-  const float radius = fmaxf(norm(centre), fmaxf(norm(b - centre), norm(d - centre)));
-  atomicMax(&c.control->radius_found, __float_as_uint(radius));
-  const GridCell at(place_of(c, corner[0]) + centre, cell);
-  const std::uint32_t bucket = touch_search::cell_hash(at.x, at.y, at.z) & c.bucket_mask;
-  c.next[t] = atomicExch(&c.heads[bucket], static_cast<std::int32_t>(t));
-}
-
-/// The triangle nearest to a vertex among those that it may touch and that do not adjoin the triangle `but`; -1: none.
-/// Of triangles at the same distance, the triangle with the lowest index is taken, so that the order in a bucket does
-/// not matter.
-__device__ __forceinline__ std::int32_t nearest_triangle(const TouchView& view, std::int32_t p, std::int32_t but)
+/// Finds the forces of a pair of vertex p and updates the pair. Calls add(i, vertex, force, turn) with the force on
+/// each of the four vertices and the moment on its normal, in whole units: i is the triangle's corner, or 3 for p, for
+/// which `turn` is null. `first`: the triangle of p's other pair, if that has been computed. `response`:
+/// physics::friction_response(). Adds to the energies `stored` and `lost` [J].
+template <bool rubs, class View, class Add>
+__device__ __forceinline__ void touch_triangle(View&& view, std::int32_t p, TouchPair& pair, std::int32_t first,
+                                               float response, const Add& add, float& stored, float& lost)
 {
   const TissueContactArguments& c = view.c;
-  const float cell = c.control->cell;
-  const GridCell at(place_of(c, p), cell);
-  std::int32_t nearest = -1;
-  float least = 1e30F;
-  for (std::int32_t n = 0; n < 27; ++n)
+  physics::SurfaceTriangle<float> triangle;
+  const auto foot = touch_search::follow(view, p, pair.triangle, triangle);
+  if (pair.triangle == first)  // both pairs have reached the same triangle
   {
-    const std::uint32_t bucket =
-        touch_search::cell_hash(at.x + n % 3 - 1, at.y + n / 3 % 3 - 1, at.z + n / 9 - 1) & c.bucket_mask;
-    for (std::int32_t t = c.heads[bucket]; t >= 0; t = c.next[t])
-    {
-      float gap = 0;
-      if ((but >= 0 && touch_search::adjoin(view, t, but)) || !touch_search::may_touch(view, p, t, cell, gap))
-        continue;
-      const float distance = fabsf(gap);
-      if (distance < least || (distance == least && t < nearest))
-      {
-        least = distance;
-        nearest = t;
-      }
-    }
+    pair = { -1, 0, 0, 0, { 0, 0, 0 }, -1 };
+    return;
   }
-  return nearest;
-}
-
-/// Chooses up to two pairs of a vertex for the next step: those that touch, then those with the nearest triangles that
-/// do not adjoin each other.
-static __device__ __noinline__ void search_pairs(const TissueContactArguments& c, std::uint32_t v)
-{
-  const TouchView view{ c };
-  const auto p = static_cast<std::int32_t>(v);
-  const TouchPair none{ -1, 0, 0, 0, { 0, 0, 0 }, 0 };
-  TouchPair* const pairs = c.pairs + 2 * std::size_t(v);
-  TouchPair kept[touch_search::most_pairs] = { none, none };
-  int count = 0;
-  for (int k = 0; k < touch_search::most_pairs; ++k)
-    if (const TouchPair pair = pairs[k]; pair.triangle >= 0 && (pair.held > 0 || pair.pressed > 0))
-      kept[count++] = pair;
-  std::int32_t found = -1;
-  for (int turn = 0; turn < touch_search::most_pairs && count < touch_search::most_pairs; ++turn)
+  const TouchTriangle& corners = view.record(pair.triangle);
+  const TouchVertex& vertex = c.vertices[p];
+  physics::TouchingPair<float> of{ vertex.stiffness, {}, {}, vertex.overlap, vertex.friction };
+  FRONTALIS_UNROLL
+  for (int i = 0; i < 3; ++i)
   {
-    found = nearest_triangle(view, p, found);
-    if (found < 0)
-      break;
-    if (count > 0 && touch_search::adjoin(view, found, kept[0].triangle))
-      continue;
-    kept[count] = none;
-    kept[count++].triangle = found;
+    of.softer[i] = corners.per_area[i] / vertex.rest.w;
+    of.inner[i] = corners.neighbour[i] < 0 ? 0.0F : 1.0F;
   }
-  for (int k = 0; k < touch_search::most_pairs; ++k)
-    pairs[k] = kept[k];
-  c.searched[v] = c.moved[v];
+  const float gap = foot.gap - of.overlap;
+  const float stiffness = gap < 0 && gap > -float(touch_search::deepest_held) * c.edge
+                              ? physics::pair_stiffness(of, foot, view.normal(p))
+                              : 0.0F;
+  physics::PairGrip<float> grip{ pair.held, 0, 0, { 0, 0, 0 } };
+  Place slip{ 0, 0, 0 };
+  if constexpr (rubs)
+  {
+    grip = { pair.held, pair.pressed, pair.along, { pair.stretch[0], pair.stretch[1], pair.stretch[2] } };
+    slip = view.change(3, p);
+    FRONTALIS_UNROLL
+    for (int i = 0; i < 3; ++i)
+      slip = slip - carried(foot, i, view.change(i, corners.vertex[i]));
+  }
+  const auto force = physics::touch_pair<rubs>(of, triangle, foot, gap, stiffness, slip, response, grip);
+  pair = { pair.triangle, grip.stiffness, grip.pressed, grip.along, { grip.stretch.x, grip.stretch.y, grip.stretch.z },
+           pair.began };
+  stored += force.stored;
+  lost += force.lost;
+  if (!(stiffness > 0))
+    return;
+  long long sum[3] = { 0, 0, 0 };
+  const float per_moment = c.per_newton / c.edge;
+  FRONTALIS_UNROLL
+  for (int i = 0; i < 3; ++i)
+  {
+    const Place on = c.per_newton * force.corner[i], turned = per_moment * force.turn[i];
+    const long long units[3] = { __float2ll_rn(on.x), __float2ll_rn(on.y), __float2ll_rn(on.z) };
+    const long long turn[3] = { __float2ll_rn(turned.x), __float2ll_rn(turned.y), __float2ll_rn(turned.z) };
+    for (int axis = 0; axis < 3; ++axis)
+      sum[axis] -= units[axis];
+    add(i, corners.vertex[i], units, turn);
+  }
+  add(3, p, sum, nullptr);
 }
 
-__device__ __forceinline__ void add_units(unsigned long long* to, long long units)
-{
-  atomicAdd(to, static_cast<unsigned long long>(units));
-}
-
-/// Adds the forces of a vertex's pairs to the sums of the vertices. `response`: physics::friction_response(). Calls
-/// wait(), which waits for the preceding kernel, once the pairs have been loaded.
+/// Adds the forces of a vertex's pairs to the sums of the vertices. Calls wait(), which waits for the preceding kernel,
+/// once the pairs have been loaded.
 template <bool rubs, class Wait>
 __device__ __forceinline__ void touch_triangles(const TissueContactArguments& c, std::uint32_t v, float response,
                                                 const Wait& wait)
 {
   static_assert(touch_search::most_pairs == 2, "both pairs are loaded at once");
-  const TouchView view{ c };
-  const auto p = static_cast<std::int32_t>(v);
-  const TouchPair both[2] = { c.pairs[2 * std::size_t(v)], c.pairs[2 * std::size_t(v) + 1] };
+  TouchPair* const pairs = c.pairs + 2 * std::size_t(v);
+  const TouchPair both[2] = { pairs[0], pairs[1] };
   wait();
+  const auto add = [&](int, std::int32_t to, const long long(&force)[3], const long long* turn)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      atomicAdd(&c.sums[to].force[axis], static_cast<unsigned long long>(force[axis]));
+      if (turn != nullptr)
+        atomicAdd(&c.sums[to].turn[axis], static_cast<unsigned long long>(turn[axis]));
+    }
+  };
   float stored = 0, lost = 0;
   std::int32_t first = -1;
   for (int k = 0; k < touch_search::most_pairs; ++k)
@@ -213,106 +185,47 @@ __device__ __forceinline__ void touch_triangles(const TissueContactArguments& c,
     TouchPair pair = k == 0 ? both[0] : both[1];
     if (pair.triangle < 0)
       continue;
-    physics::SurfaceTriangle<float> triangle;
-    const auto foot = touch_search::follow(view, p, pair.triangle, triangle);
-    if (pair.triangle == first)  // both pairs have reached the same triangle
-    {
-      c.pairs[2 * std::size_t(v) + k] = { -1, 0, 0, 0, { 0, 0, 0 }, 0 };
-      continue;
-    }
+    touch_triangle<rubs>(TouchView{ c }, static_cast<std::int32_t>(v), pair, first, response, add, stored, lost);
+    pairs[k] = pair;
     first = pair.triangle;
-    const TouchTriangle& corners = c.triangles[pair.triangle];
-    const TouchVertex& vertex = c.vertices[v];
-    physics::TouchingPair<float> of{ vertex.stiffness, {}, {}, vertex.overlap, vertex.friction };
-    for (int i = 0; i < 3; ++i)
-    {
-      of.softer[i] = c.vertices[corners.vertex[i]].rest.w / vertex.rest.w;
-      of.inner[i] = corners.neighbour[i] < 0 ? 0.0F : 1.0F;
-    }
-    const float gap = foot.gap - of.overlap;
-    const float stiffness = gap < 0 && gap > -float(touch_search::deepest_held) * c.edge
-                                ? physics::pair_stiffness(of, foot, view.normal(p))
-                                : 0.0F;
-    physics::PairGrip<float> grip{ pair.held, 0, 0, { 0, 0, 0 } };
-    Place slip{ 0, 0, 0 };
-    if constexpr (rubs)
-    {
-      grip = { pair.held, pair.pressed, pair.along, { pair.stretch[0], pair.stretch[1], pair.stretch[2] } };
-      slip = place(c.change[v]);
-      for (int i = 0; i < 3; ++i)
-        slip = slip - carried(foot, i, place(c.change[corners.vertex[i]]));
-    }
-    const auto force = physics::touch_pair<rubs>(of, triangle, foot, gap, stiffness, slip, response, grip);
-    c.pairs[2 * std::size_t(v) + k] = {
-      pair.triangle, grip.stiffness, grip.pressed, grip.along, { grip.stretch.x, grip.stretch.y, grip.stretch.z }, 0
-    };
-    stored += force.stored;
-    lost += force.lost;
-    if (!(stiffness > 0))
-      continue;
-    long long sum[3] = { 0, 0, 0 };
-    const float per_moment = c.per_newton / c.edge;
-    for (int i = 0; i < 3; ++i)
-    {
-      TouchSum& to = c.sums[corners.vertex[i]];
-      const Place on = c.per_newton * force.corner[i], turn = per_moment * force.turn[i];
-      const long long units[3] = { __float2ll_rn(on.x), __float2ll_rn(on.y), __float2ll_rn(on.z) };
-      add_units(&to.turn[0], __float2ll_rn(turn.x));
-      add_units(&to.turn[1], __float2ll_rn(turn.y));
-      add_units(&to.turn[2], __float2ll_rn(turn.z));
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        add_units(&to.force[axis], units[axis]);
-        sum[axis] -= units[axis];
-      }
-    }
-    for (int axis = 0; axis < 3; ++axis)
-      add_units(&c.sums[v].force[axis], sum[axis]);
   }
   if (rubs && lost != 0)
     c.lost[v] += double(lost);
-  if (c.looks_only)
+  if (c.measures)
     c.stored[v] = stored;
 }
 
-/// Chooses the stage of the next step. Other threads must not change the control at this time.
-__device__ __forceinline__ void choose_stage(const TissueContactArguments& c, float dt)
+/// A vertex's force [N], the moment on its normal [N m], and what they act on.
+struct TouchPush
 {
-  TouchControl& control = *c.control;
-  control.dt = dt;
-  if (control.stage == TouchStage::sort)
-  {
-    control.cell = cell_edge(c);
-    control.next = TouchStage::search;
-    return;
-  }
-  if (control.stage == TouchStage::search)
-  {
-    control.radius = control.radius_found;
-    control.radius_found = control.moved = 0;
-  }
-  // Two vertices that approach each other may both move.
-  const float approached = 2 * __uint_as_float(control.moved);
-  const bool far = approached >= float(touch_search::renewal_share * touch_search::reach) * c.edge;
-  control.next = far ? TouchStage::sort : TouchStage::hold;
+  Place force, turn;
+  float4 normal, dual[2];
+};
+
+/// Force of a vertex on corner b of its voxel [N]. `at`: coordinates in the voxel.
+__device__ __forceinline__ Place corner_push(const TissueContactArguments& c, const TouchVertex& vertex,
+                                             const float4& at, const TouchPush& push, std::uint32_t b)
+{
+  const Place tangent[2] = { place(vertex.tangent[0]), place(vertex.tangent[1]) };
+  const Place along = physics::normal_forces(push.turn, place(push.dual[0]), place(push.dual[1]), tangent,
+                                             Place{ c.inverse_spacing[0], c.inverse_spacing[1], c.inverse_spacing[2] });
+  return physics::surface_node_force(physics::SideWeights<float>(at.x, at.y, at.z), static_cast<int>(b), push.force,
+                                     along, place(push.normal));
 }
 
-/// Force of a vertex on corner b of its voxel [N].
+/// The same for the forces in TissueContactArguments::sums.
 __device__ __forceinline__ Place corner_push(const TissueContactArguments& c, std::uint32_t v, std::uint32_t b)
 {
   const TouchSum sum = c.sums[v];
-  const float4 at = c.bound.coordinates[v], normal = c.normal[v], dual0 = c.dual[2 * v], dual1 = c.dual[2 * v + 1];
-  const Place tangent[2] = { place(c.vertices[v].tangent[0]), place(c.vertices[v].tangent[1]) };
   const auto in_newton = [&](const unsigned long long(&units)[3])
   {
     return (1 / c.per_newton) * Place{ static_cast<float>(static_cast<long long>(units[0])),
                                        static_cast<float>(static_cast<long long>(units[1])),
                                        static_cast<float>(static_cast<long long>(units[2])) };
   };
-  const Place along = physics::normal_forces(c.edge * in_newton(sum.turn), place(dual0), place(dual1), tangent,
-                                             Place{ c.inverse_spacing[0], c.inverse_spacing[1], c.inverse_spacing[2] });
-  return physics::surface_node_force(physics::SideWeights<float>(at.x, at.y, at.z), static_cast<int>(b),
-                                     in_newton(sum.force), along, place(normal));
+  return corner_push(
+      c, c.vertices[v], c.bound.coordinates[v],
+      { in_newton(sum.force), c.edge * in_newton(sum.turn), c.normal[v], { c.dual[2 * v], c.dual[2 * v + 1] } }, b);
 }
 
 }  // namespace cuda

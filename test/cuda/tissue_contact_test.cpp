@@ -3,17 +3,12 @@
 
 #if __has_include(<cuda_runtime.h>) && defined(__x86_64__)
 
-#include "cuda/backend/tissue_contact_tables.hpp"
+#include "touch_in_patches.hpp"
+
 #include "solver/energy/energy_ledger_keeper.hpp"
 #include "solver/tissues_touch.hpp"
 
-#include "device_on_host.hpp"
-
-#include "cuda/kernels/bound_points.cuh"
-#include "cuda/kernels/tissue_contact.cuh"
-
-#include "frontalis/physics/sliding.hpp"
-
+#include <memory>
 #include <numeric>
 
 using namespace frontalis;
@@ -23,7 +18,7 @@ namespace
 {
 
 constexpr double dt = 20e-6;
-constexpr int steps = 1500;
+constexpr int steps = 1500, steps_per_launch = 64;
 
 using Vector = std::array<double, 3>;
 
@@ -46,10 +41,10 @@ public:
         const auto node = [&](std::size_t b) { return static_cast<std::uint32_t>(nodes[half + b]); };
         nodes_.push_back({ node(0), node(1), node(2), node(3) });
       }
-    for (auto* const words : { &moved_, &normal_, &change_, &searched_ })
+    for (auto* const words : { &moved_, &placed_, &normal_, &change_, &searched_ })
       words->assign(count, float4{ 0, 0, 0, 0 });
     dual_.resize(2 * count);
-    pairs_.assign(2 * count, { -1, 0, 0, 0, { 0, 0, 0 }, 0 });
+    pairs_.assign(2 * count, { -1, 0, 0, 0, { 0, 0, 0 }, -1 });
     lost_.assign(count, 0);
     stored_.assign(count, 0);
     heads_.assign(std::size_t(tables_.sizes.bucket_mask) + 1, -1);
@@ -63,7 +58,7 @@ public:
     gpu.triangles = tables_.triangles.data();
     gpu.joined_begin = tables_.joined_begin.data();
     gpu.joined_sources = tables_.joined_sources.data();
-    gpu.moved = moved_.data();
+    gpu.moved = gpu.placed = moved_.data();
     gpu.normal = normal_.data();
     gpu.change = gpu.rubs ? change_.data() : nullptr;
     gpu.searched = searched_.data();
@@ -77,10 +72,14 @@ public:
     gpu.stored = stored_.data();
     for (auto& component : u_)
       component.assign(model.nodes.size(), 0.0);
+    for (auto& component : v_)
+      component.assign(model.nodes.size(), 0.0F);
     before_ = u_;
   }
   TwoWays(const TwoWays&) = delete;
   TwoWays& operator=(const TwoWays&) = delete;
+
+  void cut(int blocks) { patches_ = std::make_unique<test::InPatches>(model_, tables_, blocks); }
 
   // The order in which threads run is reversed if they run `backwards`.
   void step(bool backwards)
@@ -104,26 +103,31 @@ public:
     for (std::size_t n = 0; n < model_.nodes.size(); ++n)
       u.push_back({ float(u_[0][n]), float(u_[1][n]), float(u_[2][n]), 0 });
     const auto no_wait = [] {};
-    for (std::uint32_t v = 0; v < gpu.vertex_count; ++v)
-      atomicMax(&control_.moved, __float_as_uint(place_touching(gpu, v, u.data(), no_wait)));
-    control_.stage = control_.next;
-    const bool sorts = control_.stage == TouchStage::sort, finds = control_.stage == TouchStage::search;
-    if (sorts)
-      clear_grid(gpu, 0, 1);
-    const auto in_order = [&](std::uint32_t i, std::uint32_t count) { return backwards ? count - 1 - i : i; };
+    const auto each = [&](std::uint32_t count, const auto& call)
+    {
+      for (std::uint32_t i = 0; i < count; ++i)
+        call(backwards ? count - 1 - i : i);
+    };
+    const int step = steps_++ % steps_per_launch;
+    if (step == 0)
+      search(u, each);
+    if (patches_)
+    {
+      if (step == 0)
+        patches_->list(gpu);
+      on_gpu = patches_->step(gpu, u, step, steps_per_launch, dt);
+      return;
+    }
+    each(gpu.vertex_count, [&](std::uint32_t v) { place_touching(gpu, v, u.data(), no_wait); });
     const auto response = float(physics::friction_response(dt));
-    for (std::uint32_t i = 0; i < gpu.vertex_count; ++i)
-      if (gpu.rubs)
-        touch_triangles<true>(gpu, in_order(i, gpu.vertex_count), response, no_wait);
-      else
-        touch_triangles<false>(gpu, in_order(i, gpu.vertex_count), response, no_wait);
-    const float cell = cell_edge(gpu);
-    for (std::uint32_t t = 0; sorts && t < gpu.triangle_count; ++t)
-      sort_triangle(gpu, in_order(t, gpu.triangle_count), cell);
-    for (std::uint32_t i = 0; finds && i < gpu.vertex_count; ++i)
-      search_pairs(gpu, in_order(i, gpu.vertex_count));
-    searches += finds ? 1 : 0;
-    choose_stage(gpu, float(dt));
+    each(gpu.vertex_count,
+         [&](std::uint32_t v)
+         {
+           if (gpu.rubs)
+             touch_triangles<true>(gpu, v, response, no_wait);
+           else
+             touch_triangles<false>(gpu, v, response, no_wait);
+         });
     for (std::uint32_t v = 0; v < gpu.vertex_count; ++v)
       for (std::uint32_t b = 0; b < 8; ++b)
       {
@@ -146,6 +150,9 @@ public:
     }
     const NodeShare all{ 0, 1, 0, model_.size[2] + 1, 0, static_cast<std::int32_t>(model_.nodes.size()) };
     host_.after_step(all, pointers(before_).data(), pointers(u_).data());
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      for (std::size_t n = 0; n < model_.nodes.size(); ++n)
+        v_[axis][n] = float((u_[axis][n] - before_[axis][n]) / dt);
   }
   double lost_on_gpu() const { return std::accumulate(lost_.begin(), lost_.end(), 0.0); }
   double lost_on_host()
@@ -161,6 +168,30 @@ public:
   int searches = 0;
 
 private:
+  // The search before the steps of a launch.
+  template <class Each>
+  void search(const std::vector<float4>& u, const Each& each)
+  {
+    const float* const v[3] = { v_[0].data(), v_[1].data(), v_[2].data() };
+    TissueContactArguments look = gpu;
+    look.placed = placed_.data();
+    for (std::uint32_t vertex = 0; vertex < gpu.vertex_count; ++vertex)
+    {
+      place_touching(look, vertex, u.data(), [] {});
+      atomicMax(&control_.moved, __float_as_uint(norm(place(placed_[vertex]) - place(searched_[vertex]))));
+      atomicMax(&control_.speed, __float_as_uint(speed_of(look, vertex, v)));
+    }
+    const TouchReach far(look, float(steps_per_launch * dt));
+    if (far.needed)
+    {
+      clear_grid(look, 0, 1);
+      each(gpu.triangle_count, [&](std::uint32_t t) { sort_triangle(look, t, far.cell); });
+      each(gpu.vertex_count, [&](std::uint32_t vertex) { search_pairs(look, far, vertex); });
+      ++searches;
+    }
+    end_search(look, far, float(dt));
+  }
+
   using Components = std::array<std::vector<double>, 3>;
   static std::array<const double*, 3> pointers(const Components& u)
   {
@@ -172,14 +203,17 @@ private:
   const TouchTables tables_;
   TissueContact<double> host_;
   Components u_, before_;
+  std::array<std::vector<float>, 3> v_;
   std::vector<uint4> nodes_;
-  std::vector<float4> moved_, normal_, change_, searched_, dual_;
+  std::vector<float4> moved_, placed_, normal_, change_, searched_, dual_;
   std::vector<TouchPair> pairs_;
   std::vector<double> lost_;
   std::vector<float> stored_;
   std::vector<std::int32_t> heads_, next_;
   std::vector<TouchSum> sums_;
   TouchControl control_{};
+  int steps_ = 0;
+  std::unique_ptr<test::InPatches> patches_;
 };
 
 double length(const Vector& v) { return std::hypot(v[0], v[1], v[2]); }
@@ -195,14 +229,16 @@ TEST(TissueContactOfTheGpu, IsThatOfTheHost)
     test::BlockSettings settings;
     settings.voxels = { { 7, 6, 2 } };
     const Model model = test::two_blocks(settings, friction);
-    TwoWays contact(model), again(model);
-    double most = 0, worst = 0, unbalanced = 0;
+    TwoWays contact(model), again(model), cut(model);
+    cut.cut(9);
+    double most = 0, worst = 0, apart = 0, unbalanced = 0;
     int touching = 0;
     for (int step = 0; step < steps; ++step)
     {
       contact.step(false);
       again.step(true);
       EXPECT_EQ(contact.on_gpu, again.on_gpu) << step;
+      cut.step(false);
       Vector sum{};
       double most_now = 0;
       for (std::size_t n = 0; n < contact.on_gpu.size(); ++n)
@@ -211,6 +247,7 @@ TEST(TissueContactOfTheGpu, IsThatOfTheHost)
           sum[axis] += contact.on_gpu[n][axis];
           most_now = std::max(most_now, std::abs(contact.on_host[n][axis]));
           worst = std::max(worst, std::abs(contact.on_host[n][axis] - contact.on_gpu[n][axis]));
+          apart = std::max(apart, std::abs(cut.on_gpu[n][axis] - contact.on_gpu[n][axis]));
         }
       unbalanced = std::max(unbalanced, length(sum));
       most = std::max(most, most_now);
@@ -229,6 +266,7 @@ TEST(TissueContactOfTheGpu, IsThatOfTheHost)
       };
       contact.move(path);
       again.move(path);
+      cut.move(path);
     }
     // The gap of 1 mm is closed while 1.15 mm times the sine of the path's angle is larger. Waves change these times a
     // little.
@@ -236,9 +274,11 @@ TEST(TissueContactOfTheGpu, IsThatOfTheHost)
     EXPECT_GT(contact.searches, 5);
     EXPECT_GT(most, 1e-3);
     EXPECT_LT(worst, 1e-5 * most) << friction;
+    EXPECT_LT(apart, 1e-6 * most) << friction;
     EXPECT_LT(unbalanced, 1e-5 * most) << friction;
     EXPECT_EQ(contact.lost_on_host() > 0, friction > 0);
     EXPECT_NEAR(contact.lost_on_gpu(), contact.lost_on_host(), 1e-4 * contact.lost_on_host());
+    EXPECT_EQ(contact.lost_on_gpu(), cut.lost_on_gpu());
   }
 }
 

@@ -54,6 +54,7 @@ struct TissueContact<Real>::View
   bool joined(std::int32_t v, std::int32_t w) const { return contact.surface_.joined(v, w); }
   const std::int32_t* corners(std::int32_t t) const { return contact.surface_.triangles[t].vertex.data(); }
   const std::int32_t* neighbours(std::int32_t t) const { return contact.surface_.triangles[t].neighbour.data(); }
+  physics::SurfaceTriangle<double> triangle(std::int32_t t) const { return touch_search::triangle_of(*this, t); }
   bool placed(std::int32_t t) const
   {
     const auto& corners = contact.surface_.triangles[t].vertex;
@@ -157,7 +158,7 @@ typename TissueContact<Real>::Found TissueContact<Real>::search(std::size_t p)
              [&](std::int32_t t)
              {
                double gap;
-               if (!touch_search::may_touch(view, static_cast<std::int32_t>(p), t, grid_.reach(), gap))
+               if (!touch_search::may_touch(view, static_cast<std::int32_t>(p), t, reach_, grid_.reach(), gap))
                  return;
                // If t is nearer, it replaces the triangle found so far that shares a corner with t or, if none does,
                // the farthest triangle found so far.

@@ -19,6 +19,7 @@ namespace frontalis
 ///   joined(v, w)              whether two vertices never touch, because they are close along the surface
 ///   corners(t)                TouchingSurface::Triangle::vertex
 ///   neighbours(t)             TouchingSurface::Triangle::neighbour
+///   triangle(t)               triangle_of(); follow() calls it before it asks for anything else of t
 ///   placed(t)                 whether the present positions of the corners are known
 ///   edge()                    shortest voxel edge [m]
 namespace touch_search
@@ -68,25 +69,25 @@ FRONTALIS_LAW physics::SurfaceTriangle<T> triangle_of(const View& view, std::int
 
 /// Changes t, a triangle near the vertex p, to the triangle of the surface under p, and returns p's foot there. Does
 /// not enter triangles whose corners have no present positions. `triangle`: set to triangle_of(t).
-template <class View, class T = typename View::Number>
-FRONTALIS_LAW physics::SurfaceFoot<T> follow(const View& view, std::int32_t p, std::int32_t& t,
+template <class View, class T>
+FRONTALIS_LAW physics::SurfaceFoot<T> follow(View&& view, std::int32_t p, std::int32_t& t,
                                              physics::SurfaceTriangle<T>& triangle)
 {
   for (int hop = 0;; ++hop)
   {
-    triangle = triangle_of(view, t);
+    triangle = view.triangle(t);
     const physics::SurfaceFoot<T> foot = physics::surface_foot(triangle, view.apart(p, view.corners(t)[0]));
     const std::int32_t* const neighbour = view.neighbours(t);
     std::int32_t to = -1;
-    T least = static_cast<T>(-View::edge_error);
+    T least = static_cast<T>(-view.edge_error);
     FRONTALIS_UNROLL
     for (int i = 0; i < 3; ++i)
-      if (neighbour[i] >= 0 && foot.weight[i] < least && view.placed(neighbour[i]))
+      if (hop < most_hops && neighbour[i] >= 0 && foot.weight[i] < least && view.placed(neighbour[i]))
       {
         least = foot.weight[i];
         to = neighbour[i];
       }
-    if (to < 0 || hop == most_hops)
+    if (to < 0)
       return foot;
     t = to;
   }
@@ -117,14 +118,14 @@ FRONTALIS_LAW bool inseparable(const View& view, std::int32_t p, std::int32_t t)
   return length < T(thickest_sheet) * view.edge() && dot(way, normal) < -(deep > aside ? deep : aside) * norm(normal);
 }
 
-/// Whether a triangle of a facing surface is in front of a vertex within the reach, or just behind it. `cell`: edge of
-/// the grid's cells [m]; `gap`: set to the vertex's gap less its overlap [m].
+/// Whether a triangle of a facing surface is in front of a vertex within a distance, or just behind it. `within`: that
+/// distance [m]; `cell`: edge of the grid's cells [m]; `gap`: set to the vertex's gap less its overlap [m].
 template <class View, class T = typename View::Number>
-FRONTALIS_LAW bool may_touch(const View& view, std::int32_t p, std::int32_t t, T cell, T& gap)
+FRONTALIS_LAW bool may_touch(const View& view, std::int32_t p, std::int32_t t, T within, T cell, T& gap)
 {
   const std::int32_t* const corner = view.corners(t);
   const physics::Vec3<T> way = view.apart(p, corner[0]), inward = view.normal(p);
-  const T within = T(reach) * view.edge(), farthest = 2 * cell - T(margin) * within;
+  const T farthest = 2 * cell - T(margin) * within;
   if (dot(way, way) > farthest * farthest || dot(inward, view.normal(corner[0])) > T(same_way) ||
       view.contact_of(p) != view.contact_of(corner[0]))
     return false;

@@ -1,0 +1,11 @@
+#include "cuda/kernels/patch_kernel.cuh"
+
+namespace frontalis
+{
+namespace cuda
+{
+
+const void* touch_patch_kernel(Effects effects) { return patch_kernel_of<of_nodes | Effects::touch>(effects); }
+
+}  // namespace cuda
+}  // namespace frontalis
