@@ -15,7 +15,7 @@ namespace cuda
 /// other, because they read vertices that other patches place in the same step.
 std::uint32_t most_touching_vertices(const Model& model, const VoxelPatches& patches);
 
-/// Contact of tissue with itself in device memory. Before the steps of a launch, kernels search for pairs of a vertex
+/// Contact of tissue with itself in device memory. Before the steps of a plan, kernels search for pairs of a vertex
 /// and a triangle if the motion requires it. Patches then find the forces of the pairs within their steps. In strips,
 /// and with patches that make one step per launch, kernels before each step place the vertices, find the forces, and
 /// change the velocities of nodes.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <map>
 
 namespace frontalis
@@ -110,6 +111,7 @@ void TouchPatchTables::add_near(const TouchTables& tables)
   for (const Patches& list : of_vertex)
     add(list);
   std::size_t most = 0;
+  std::vector<Patches> watched_by(patches.size());
   for (std::size_t v = 0; v < vertices; ++v)
   {
     const float4& here = tables.vertices[v].rest;
@@ -127,7 +129,17 @@ void TouchPatchTables::add_near(const TouchTables& tables)
     unite(list);
     most = std::max(most, list.size());
     add(list);
+    for (const std::uint16_t p : list)
+      watched_by[p].insert(watched_by[p].end(), list.begin(), list.end());
   }
+  for (std::size_t p = 0; p < patches.size(); ++p)
+  {
+    unite(watched_by[p]);
+    watch_begin.push_back(static_cast<std::uint32_t>(watched.size()));
+    std::copy_if(watched_by[p].begin(), watched_by[p].end(), std::back_inserter(watched),
+                 [&](std::uint16_t q) { return q != p; });
+  }
+  watch_begin.push_back(static_cast<std::uint32_t>(watched.size()));
   near_begin.push_back(static_cast<std::uint32_t>(near.size()));
   for (const Patches& list : of_vertex)
     most_entries += list.size() + 2 * most;
@@ -139,18 +151,25 @@ DeviceTouchPatches::DeviceTouchPatches(const TouchPatchTables& tables)
       corners_(tables.corners),
       vertex_of_(tables.vertex_of),
       near_begin_(tables.near_begin),
+      watch_begin_(tables.watch_begin),
       counts_(tables.patches.size()),
       lists_(tables.patches.size() * tables.vertices),
       entry_vertex_(tables.most_entries),
       voxels_(tables.voxels),
       copy_of_(tables.copy_of),
       near_(tables.near),
+      watched_(tables.watched),
       entries_(tables.most_entries),
       before_(tables.vertex_of.size())
 {
   for (auto& words : words_)
   {
     words = DeviceArray<float4>(touch_words * tables.vertices);
+    words.clear();
+  }
+  for (auto& words : ended_)
+  {
+    words = DeviceArray<float4>(tables.patches.size());
     words.clear();
   }
 }
@@ -172,14 +191,18 @@ TouchPatches DeviceTouchPatches::view() const
            lists_.data(),
            entries_.data(),
            entry_vertex_.data(),
-           { words_[0].data(), words_[1].data() } };
+           { words_[0].data(), words_[1].data() },
+           watch_begin_.data(),
+           watched_.data(),
+           { ended_[0].data(), ended_[1].data() } };
 }
 
 std::size_t DeviceTouchPatches::bytes() const
 {
   return patches_.bytes() + corners_.bytes() + vertex_of_.bytes() + near_begin_.bytes() + entry_vertex_.bytes() +
          voxels_.bytes() + copy_of_.bytes() + near_.bytes() + counts_.bytes() + lists_.bytes() + entries_.bytes() +
-         before_.bytes() + words_[0].bytes() + words_[1].bytes();
+         before_.bytes() + words_[0].bytes() + words_[1].bytes() + watch_begin_.bytes() + watched_.bytes() +
+         ended_[0].bytes() + ended_[1].bytes();
 }
 
 }  // namespace cuda

@@ -23,6 +23,8 @@ struct TouchPatchTables
   std::vector<std::uint16_t> copy_of;
   std::vector<std::uint32_t> near_begin;
   std::vector<std::uint16_t> near;
+  std::vector<std::uint32_t> watch_begin;
+  std::vector<std::uint16_t> watched;
   float slide;
   std::size_t vertices;
   std::size_t most_entries = 0;  ///< number of entries that all lists together can have
@@ -44,11 +46,11 @@ private:
   float slide_;
   DeviceArray<TouchPatch> patches_;
   DeviceArray<uint4> corners_;
-  DeviceArray<std::uint32_t> vertex_of_, near_begin_, counts_, lists_, entry_vertex_;
+  DeviceArray<std::uint32_t> vertex_of_, near_begin_, watch_begin_, counts_, lists_, entry_vertex_;
   DeviceArray<BoundVoxel> voxels_;
-  DeviceArray<std::uint16_t> copy_of_, near_;
+  DeviceArray<std::uint16_t> copy_of_, near_, watched_;
   DeviceArray<TouchEntry> entries_;
-  DeviceArray<float4> before_, words_[2];
+  DeviceArray<float4> before_, words_[2], ended_[2];
 };
 
 }  // namespace cuda

@@ -240,6 +240,8 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
         const float4* const from = u + __ldg(g.halo + patch.halo_begin + h);
         memory.place[h] = step == g.step_begin ? *from : receive(from, mark(g, step));
       }
+      if (has<With, Effects::touch>)
+        await_touch(g, touch);
       __syncthreads();
       if (has<With, Effects::contact>)
         look_at_watched(g, contact, memory, watch);

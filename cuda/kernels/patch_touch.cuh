@@ -10,9 +10,10 @@ namespace cuda
 {
 
 // Contact of tissue with itself in patches. A patch computes all pairs that push vertices of its voxels, even if other
-// patches compute them as well. The pairs of a launch are listed before it. Vertices of other patches are read as words
-// with step numbers. Their two buffers suffice: whoever reads a vertex has itself, or a neighbour has for it, a vertex
-// that the writer must read before it can be two steps ahead.
+// patches compute them as well. The pairs of a plan are listed before it. Vertices of other patches are read as words
+// with step numbers. Two buffers suffice, because no vertex is published in step s + 2 before it has been read in step
+// s: its patch has waited for all patches that may compute the same pairs to end step s (await_touch()), or it has read
+// the pair's other vertices, whose patches have waited, or which share a voxel with the reader.
 
 /// Shared memory of a patch's vertices, each array at a stride of `room` entries.
 struct TouchMemory
@@ -74,6 +75,19 @@ __device__ __forceinline__ TouchStep fetch_touch(const StepArguments& g, const S
   touch.first = step == g.step_begin;
   touch.last = step + 1 == g.step_end;
   return touch;
+}
+
+/// Waits for the patches that may read the vertices of this one to be ready for the step.
+__device__ __forceinline__ void await_touch(const StepArguments& g, const TouchStep& touch)
+{
+  if (touch.count == 0 || touch.first)
+    return;
+  const TouchPatches& in = g.touch.in_patches;
+  const std::uint32_t end = in.watch_begin[touch.index + 1];
+  // The first threads wait for nodes.
+  for (std::uint32_t i = in.watch_begin[touch.index] + blockDim.x - 1 - threadIdx.x; i < end; i += blockDim.x)
+    if (const std::uint32_t patch = __ldg(in.watched + i); in.counts[patch] > 0)
+      receive(in.ended[touch.buffer] + patch, touch.mark);
 }
 
 /// Places the patch's vertices and publishes those that it has to. Ends with a barrier. Where no pair is near, vertices
@@ -345,6 +359,11 @@ __device__ __forceinline__ void add_touch(const StepArguments& g, const TouchSte
   __syncthreads();
   for (std::uint32_t i = threadIdx.x; i < 12 * own.room; i += blockDim.x)
     own.high[i] = 0;
+  if (threadIdx.x == 0 && !touch.last)
+  {
+    const float nothing[3] = { 0, 0, 0 };
+    send(c.in_patches.ended[1 - touch.buffer] + touch.index, nothing, touch.mark + 1);
+  }
 }
 
 }  // namespace cuda

@@ -71,7 +71,7 @@ struct TouchEntry
 };
 
 /// What patches need to find the forces within their steps. A patch places the vertices of its voxels. Of the copies of
-/// a vertex, one publishes the vertex for other patches, as displacements of nodes are (patch_kernel.cuh).
+/// a vertex, one publishes the vertex for other patches, as displacements of nodes are (patch_exchange.cuh).
 struct TouchPatches
 {
   const TouchPatch* patches;  ///< per patch; null: patches do not find the forces
@@ -94,6 +94,9 @@ struct TouchPatches
   TouchEntry* entries;          ///< of all lists
   std::uint32_t* entry_vertex;  ///< of each entry: the vertex; bit 31: this entry's state is the one that is kept
   float4* words[2];             ///< three per vertex: displacement, normal, change; each with the number of its step
+  const std::uint32_t* watch_begin;  ///< per patch, first entry of `watched`
+  const std::uint16_t* watched;      ///< other patches with which the patch is in a list of `near` of a pair's vertex
+  float4* ended[2];                  ///< per patch: a word with the number of the step for which it is ready
 };
 constexpr std::uint16_t no_touch_copy = 0xffff;
 constexpr std::uint32_t touch_mark = 0x80000000u, touch_words = 3;

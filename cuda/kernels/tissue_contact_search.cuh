@@ -7,7 +7,7 @@ namespace frontalis
 namespace cuda
 {
 
-// The search for pairs of a vertex and a triangle before the steps of a launch.
+// The search for pairs of a vertex and a triangle before the steps of a plan.
 
 /// Largest speed of the nodes of a vertex's voxel [m/s]. `v`: velocities of device nodes.
 __device__ __forceinline__ float speed_of(const TissueContactArguments& c, std::uint32_t vertex,

@@ -42,6 +42,18 @@ public:
     entry_vertex_.resize(tables_.most_entries);
     for (auto& words : words_)
       words.assign(touch_words * tables_.vertices, float4{ 0, 0, 0, 0 });
+    // Patches wait for each other.
+    const auto watches = [&](std::uint32_t p, std::uint32_t q)
+    {
+      const auto first = tables_.watched.begin();
+      return std::find(first + tables_.watch_begin[p], first + tables_.watch_begin[p + 1], q) !=
+             first + tables_.watch_begin[p + 1];
+    };
+    for (std::uint32_t p = 0; p < cut_.patches.size(); ++p)
+      for (std::uint32_t q = 0; q < cut_.patches.size(); ++q)
+        EXPECT_EQ(watches(p, q), watches(q, p));
+    for (auto& words : ended_)
+      words.assign(cut_.patches.size(), float4{ 0, 0, 0, 0 });
     view_ = { tables_.patches.data(),
               std::uint32_t(cut_.patches.size()),
               tables_.corners.data(),
@@ -57,7 +69,10 @@ public:
               lists_.data(),
               entries_.data(),
               entry_vertex_.data(),
-              { words_[0].data(), words_[1].data() } };
+              { words_[0].data(), words_[1].data() },
+              tables_.watch_begin.data(),
+              tables_.watched.data(),
+              { ended_[0].data(), ended_[1].data() } };
     for (std::size_t p = 0; p < cut_.patches.size(); ++p)
     {
       place_.emplace_back(cut_.most_halo + cut_.most_nodes);
@@ -107,6 +122,7 @@ public:
           if (step == 0)
             clear_touch(launch_, memory);
           touch.push_back(fetch_touch(g, launch_, std::uint32_t(p), step));
+          await_touch(g, touch[p]);
           place_touch(g, touch[p], memory);
         });
     Forces forces(u.size());
@@ -150,7 +166,7 @@ private:
   StepLaunch launch_{};
   std::vector<std::uint32_t> counts_, lists_, entry_vertex_;
   std::vector<TouchEntry> entries_;
-  std::vector<float4> before_, words_[2];
+  std::vector<float4> before_, words_[2], ended_[2];
   TouchPatches view_{};
   std::vector<std::vector<float4>> place_, touch_;
   std::vector<std::vector<float>> force_;
