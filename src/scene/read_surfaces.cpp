@@ -120,14 +120,22 @@ void read_forehead(Mapping& mapping, Shape& shape, Parts& parts)
   read_dimensions(mapping, shape);
 }
 
-void read_head(Mapping& mapping, MeshFolder& folder, Shape& shape, Parts& parts)
+// Reads a part, or parts, of a head. One that says nothing of its size has that of the head above it in the file.
+void read_head(Mapping& mapping, MeshFolder& folder, const std::vector<Surface>& known, Shape& shape, Parts& parts)
 {
+  const bool sized = mapping.has("dimensions") || mapping.has("sex") || mapping.has("age") || mapping.has("tissue");
   const Node file = mapping.required("template", "the YAML file of a head");
   const Node many = mapping.optional("parts"), one = mapping.optional("part");
   read_dimensions(mapping, shape);
   const Node sex = mapping.optional("sex"), age = mapping.optional("age"), tissue = mapping.optional("tissue");
   shape.head = folder.head(file);
   const std::string of = sex.choice({ "male", "female" });
+  for (const Surface& earlier : known)
+    if (!sized && shape.head && earlier.shape && earlier.shape->head == shape.head)
+    {
+      shape.dimensions = earlier.shape->dimensions;
+      shape.tissue = earlier.shape->tissue;
+    }
   if (shape.head)
   {
     const auto names_of = [](const auto& presets)
@@ -219,7 +227,7 @@ Shape read_shape(const Node& kind_node, Mapping& mapping, MeshFolder& folder, co
   if (shape.kind == Shape::Kind::forehead)
     read_forehead(mapping, shape, parts);
   else if (shape.kind == Shape::Kind::head)
-    read_head(mapping, folder, shape, parts);
+    read_head(mapping, folder, known, shape, parts);
   else if (shape.kind == Shape::Kind::muscle)
     read_muscle_shape(mapping, shape);
   else if (shape.kind == Shape::Kind::offset)

@@ -145,5 +145,17 @@ TEST(Set, takes_a_head_of_a_sex_an_age_and_a_tissue)
   EXPECT_THROW(scene_of(", age: ancient"), Error);
 }
 
+TEST(Set, gives_later_parts_the_size_of_its_head)
+{
+  const std::string shape = "{shape: head, template: " FRONTALIS_SOURCE_DIRECTORY "/config/head/head.yaml, ";
+  const Scene scene = read_with("  head: " + shape + "parts: [skin], dimensions: {zy_zy: 145}, tissue: full}\n" +
+                                    "  lining: " + shape + "part: skin}\n  other: " + shape +
+                                    "part: skin, age: young}\n" + "  tissue: {shape: box, size: [1, 1, 1]}\n",
+                                "  body: {}\n");
+  EXPECT_EQ(named(scene.surfaces, "lining").shape->dimensions, named(scene.surfaces, "skin").shape->dimensions);
+  EXPECT_EQ(named(scene.surfaces, "lining").shape->tissue, 1.2);
+  EXPECT_TRUE(named(scene.surfaces, "other").shape->dimensions.empty());
+}
+
 }  // namespace
 }  // namespace frontalis
