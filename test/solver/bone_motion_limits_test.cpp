@@ -19,24 +19,51 @@ using Poses = BoneMotionLimits::Poses;
 
 Poses moved(double way) { return { rigid_motion({ { 0, 0, 0 } }, { { way, 0, 0 } }) }; }
 
+// The block, whose upper end the bone holds.
+Model held_block()
+{
+  Model model = test::block_model();
+  model.bones = { "bone" };
+  for (std::size_t n = 0; n < model.nodes.size(); ++n)
+    if (model.nodes[n][2] == model.size[2])
+      model.rigid.push_back({ static_cast<std::int32_t>(n), 0 });
+  return model;
+}
+
+double way_along_x(const Poses& poses) { return poses.at(0).translation[0]; }
+
 }  // namespace
 
-TEST(BoneMotionLimits, keep_bones_from_skipping_voxels)
+TEST(BoneMotionLimits, keep_bones_from_outrunning_tissue)
 {
-  const Model model = test::block_model();
-  const BoneMotionLimits limits(model);
-  EXPECT_NEAR(limits.longest_step(moved(0), moved(speed), 1), 0.1 * edge / speed, 1e-9);
-  EXPECT_TRUE(std::isinf(limits.longest_step(moved(speed), moved(speed), 1)));
-  EXPECT_TRUE(std::isinf(limits.longest_step({}, {}, 1)));
-  // A rotation moves the far corner along an arc.
+  const Model model = held_block();
+  // at this critical step a bone may move with `speed`
+  const BoneMotionLimits limits(model, 0.1 * edge / speed);
+  EXPECT_NEAR(way_along_x(limits.reached(moved(0), moved(speed), 1)), speed, 1e-12) << "just slow enough";
+  EXPECT_NEAR(way_along_x(limits.reached(moved(0), moved(3 * speed), 1)), speed, 1e-9);
+  EXPECT_NEAR(way_along_x(limits.reached(moved(speed), moved(-speed), 0.5)), 0.5 * speed, 1e-9);
+  EXPECT_EQ(way_along_x(limits.reached(moved(speed), moved(0), 0)), speed) << "no time passes";
+  EXPECT_TRUE(limits.reached({}, {}, 1).empty());
+}
+
+TEST(BoneMotionLimits, count_the_tissue_that_a_bone_can_move)
+{
+  Model model = held_block();
+  const BoneMotionLimits limits(model, 0.1 * edge / speed);
   const Poses turned{ rigid_motion({ { 0, 0, 1 } }, { { 0, 0, 0 } }) };
-  EXPECT_NEAR(limits.longest_step(moved(0), turned, 1), 0.1 * edge / (4e-3 * std::sqrt(2.0)), 1e-3);
+  // The farthest held node moves along an arc. It may take as long as `speed` needs for the arc.
+  const double arc = std::hypot(model.size[0], model.size[1]) * edge;
+  EXPECT_NEAR(limits.reached(moved(0), turned, 0.99 * arc / speed)[0].rotation[0], std::cos(0.99), 5e-3);
+  EXPECT_EQ(limits.reached(moved(0), turned, 1.01 * arc / speed)[0].rotation, turned[0].rotation);
+  // A bone that holds no tissue may go anywhere at once.
+  model.rigid.clear();
+  EXPECT_EQ(way_along_x(BoneMotionLimits(model, 1).reached(moved(0), moved(speed), 1e-9)), speed);
 }
 
 TEST(BoneMotionLimits, notice_jumps_of_velocity)
 {
-  const Model model = test::block_model();
-  BoneMotionLimits limits(model);
+  const Model model = held_block();
+  BoneMotionLimits limits(model, 1);
   // time step in which a bone with this speed moves by the limit, 0.5 % of a voxel [s]
   const double felt = 0.005 * edge / speed;
   EXPECT_TRUE(limits.jumps(moved(0), moved(speed), 1, 1.01 * felt)) << "it begins to move";

@@ -17,7 +17,7 @@ namespace frontalis
 
 /// Increased whenever the same model and controls give a different motion (other steps, other laws), or Solver::pack()
 /// gives different bytes. Stored motions of another generation are refused.
-constexpr int motion_generation = 14;
+constexpr int motion_generation = 15;
 
 /// A name of backend_names(): "auto" (the GPU if there is one, else the CPU), "reference" (double precision, plain
 /// loops; slow, but tests compare the others with it), "cpu" (SIMD, all cores), "cuda".
@@ -73,9 +73,9 @@ public:
   virtual void reset() = 0;
 
   /// Advances by exactly `seconds` of simulated time in equal steps of at most the safe time step. Over that time
-  /// activations and bone poses change linearly to `target`; bones rotate through the smallest angle. Throws Error,
-  /// with the state unchanged, if the target is not finite, outside 0..1 or of the wrong length. Throws Diverged, after
-  /// which only reset() and restore() are of use.
+  /// activations and bone poses change linearly to `target`; bones rotate through the smallest angle, as far as a fifth
+  /// of the speed of sound in the tissue takes them. Throws Error, with the state unchanged, if the target is not
+  /// finite, outside 0..1 or of the wrong length. Throws Diverged, after which only reset() and restore() are of use.
   virtual void advance(double seconds, const Controls& target) = 0;
 
   /// Throws the Error that advance() would throw: after divergence, or for an invalid duration or target.

@@ -4,6 +4,7 @@
 #include "solver/stepping/discretisation.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace frontalis
@@ -11,24 +12,65 @@ namespace frontalis
 namespace
 {
 
-constexpr double way_per_step = 0.1;  // longest path of a bone in a step, in shortest voxel edges
+constexpr double way_per_step = 0.1;  // longest path of a bone in a critical step, in shortest voxel edges
 // allowed jump of a bone's velocity, as path per step in shortest voxel edges
 constexpr double velocity_jump_allowed = 0.005;
 constexpr double straight_share = 1.0 / 64;  // fraction of a motion over which a bone's path is taken as straight
 
 }  // namespace
 
-BoneMotionLimits::BoneMotionLimits(const Model& model)
-    : shortest_edge_(*std::min_element(model.spacing.begin(), model.spacing.end())), far_corner_(far_corner(model))
+double BoneMotionLimits::Reach::fastest_way(const RigidTransform& from, const RigidTransform& to) const
 {
+  std::array<double, 3> size{};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    size[axis] = upper[axis] - lower[axis];
+  const RigidTransform corner{ RigidTransform().rotation, lower };
+  return size[0] >= 0 ? frontalis::fastest_way(composed(from, corner), composed(to, corner), size) : 0;
 }
 
-double BoneMotionLimits::longest_step(const Poses& from, const Poses& to, double seconds) const
+void BoneMotionLimits::Reach::include(const std::array<double, 3>& p)
 {
-  double fastest = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+  {
+    lower[axis] = std::min(lower[axis], p[axis]);
+    upper[axis] = std::max(upper[axis], p[axis]);
+  }
+}
+
+BoneMotionLimits::BoneMotionLimits(const Model& model, double critical_step)
+    : shortest_edge_(*std::min_element(model.spacing.begin(), model.spacing.end())),
+      far_corner_(far_corner(model)),
+      top_speed_(std::isfinite(critical_step) ? way_per_step * shortest_edge_ / critical_step : critical_step)
+{
+  constexpr double far = std::numeric_limits<double>::infinity();
+  reach_.assign(model.bones.size(), { { { far, far, far } }, { { -far, -far, -far } } });
+  const auto moves = [&](std::int32_t bone, const std::array<double, 3>& p)
+  {
+    if (bone >= 0)
+      reach_[bone].include(p);
+  };
+  for (const RigidNode& node : model.rigid)
+    moves(node.bone, rest_position(model, node.node));
+  for (const SlidingNode& node : model.sliding)
+    moves(model.constraint_surfaces[node.surface].bone, rest_position(model, node.node));
+  for (const AttachedNode& node : model.attached)
+    moves(node.surface >= 0 ? model.constraint_surfaces[node.surface].bone : node.bone,
+          rest_position(model, node.node));
+  for (const Contact& contact : model.contacts)
+    for (const auto& point : contact.points)
+      moves(contact.bone, point);
+}
+
+BoneMotionLimits::Poses BoneMotionLimits::reached(const Poses& from, const Poses& to, double seconds) const
+{
+  Poses result = to;
   for (std::size_t b = 0; b < to.size(); ++b)
-    fastest = std::max(fastest, fastest_way(from[b], to[b], far_corner_));
-  return fastest > 0 ? way_per_step * shortest_edge_ * seconds / fastest : std::numeric_limits<double>::infinity();
+  {
+    const double way = reach_[b].fastest_way(from[b], to[b]), longest = top_speed_ * seconds;
+    if (way > longest)
+      result[b] = interpolate(from[b], to[b], longest / way);
+  }
+  return result;
 }
 
 bool BoneMotionLimits::jumps(const Poses& from, const Poses& to, double seconds, double step) const

@@ -8,17 +8,19 @@
 namespace frontalis
 {
 
-/// Limits that moving bones set to the time step.
+/// Limits of the speed of bones, and of its jumps.
 class BoneMotionLimits
 {
 public:
   using Poses = std::vector<RigidTransform>;
 
-  explicit BoneMotionLimits(const Model& model);
+  /// critical_step: critical time step of the model at rest [s]
+  BoneMotionLimits(const Model& model, double critical_step);
 
-  /// Longest step [s] in which no bone moves by more than a tenth of a voxel. A faster bone would invert the tissue
-  /// attached to it before the time step adapts.
-  double longest_step(const Poses& from, const Poses& to, double seconds) const;
+  /// The poses that bones reach on their way to `to` in this time. No part of a bone that holds tissue moves by more
+  /// than a tenth of a voxel in a critical step, about a fifth of the speed of sound. A faster bone would invert the
+  /// tissue attached to it, and fling nodes of little mass away.
+  Poses reached(const Poses& from, const Poses& to, double seconds) const;
   /// Whether a bone's velocity jumps at the start of this motion, by more than 0.5 % of a voxel per step. That is about
   /// 1 % of the speed of sound, because waves cross about half a voxel in a safe step.
   bool jumps(const Poses& from, const Poses& to, double seconds, double step) const;
@@ -27,8 +29,19 @@ public:
   void archive(ByteArchive& archive) { archive(before_)(seconds_); }
 
 private:
+  // A box around the tissue that a bone can move.
+  struct Reach
+  {
+    std::array<double, 3> lower, upper;
+
+    double fastest_way(const RigidTransform& from, const RigidTransform& to) const;  // of a corner of the box [m]
+    void include(const std::array<double, 3>& p);
+  };
+
   double shortest_edge_;
   std::array<double, 3> far_corner_;
+  double top_speed_;  // [m/s]
+  std::vector<Reach> reach_;
   Poses before_;        // at the start of the latest motion
   double seconds_ = 0;  // duration of that motion; 0: there was none
 };

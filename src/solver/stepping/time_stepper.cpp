@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 namespace frontalis
 {
@@ -24,6 +25,13 @@ constexpr double relaxation_interval = 0.005;
 constexpr double fully_relaxed = 1e9;  // a time longer than any time constant [s]
 // During dynamic relaxation, a window ends after this number of steps even if no motion is found.
 constexpr int steps_per_window = 2048;
+
+bool same_poses(const std::vector<RigidTransform>& a, const std::vector<RigidTransform>& b)
+{
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const RigidTransform& x, const RigidTransform& y)
+                    { return x.rotation == y.rotation && x.translation == y.translation; });
+}
 
 // Adds the wall seconds from its construction to its destruction to a sum.
 class Stopwatch
@@ -73,7 +81,8 @@ TimeStepper::Motion TimeStepper::at_rest() const
 {
   const std::vector<float> relaxed(model_->muscles.size(), 0);
   const std::vector<RigidTransform> in_place(model_->bones.size());
-  return { BoneMotionLimits(*model_), { relaxed, in_place }, relaxed };
+  const double critical_step = 2 / std::sqrt(discretisation_.frequency_squared_max);
+  return { BoneMotionLimits(*model_, critical_step), { relaxed, in_place }, relaxed };
 }
 
 void TimeStepper::renew_conditions()
@@ -132,13 +141,14 @@ void TimeStepper::check(double seconds, const Controls& target) const
     throw Error("the motion has diverged earlier: reset the solver first");
 }
 
-void TimeStepper::advance(double seconds, const Controls& target)
+void TimeStepper::advance(double seconds, const Controls& asked)
 {
-  check(seconds, target);
+  check(seconds, asked);
   const Stopwatch stopwatch(profile_.stepping);
   const double begin = motion_.time, end = begin + seconds;
   const Controls from = motion_.controls;
-  double longest_step = motion_.bones.longest_step(from.bone, target.bone, seconds);
+  const Controls target{ asked.activation, motion_.bones.reached(from.bone, asked.bone, seconds) };
+  double longest_step = std::numeric_limits<double>::infinity();
   for (const auto& stiffness : discretisation_.added)
     longest_step = std::min(longest_step, model_->time_step_share * stiffness->longest_step());
   if (motion_.bones.jumps(from.bone, target.bone, seconds, time_step()))
@@ -186,10 +196,8 @@ void TimeStepper::renew_assembled_estimate(const Controls& asked)
   std::vector<float> most = motion_.activation;
   for (std::size_t m = 0; m < most.size(); ++m)
     most[m] = std::max({ most[m], motion_.controls.activation[m], asked.activation[m] });
-  const bool bones_move = !std::equal(asked.bone.begin(), asked.bone.end(), motion_.controls.bone.begin(),
-                                      [](const RigidTransform& a, const RigidTransform& b)
-                                      { return a.rotation == b.rotation && a.translation == b.translation; });
-  controller_.assembled().renew(most, bones_move, controller_.state().frequency_squared, search);
+  controller_.assembled().renew(most, !same_poses(asked.bone, motion_.controls.bone),
+                                controller_.state().frequency_squared, search);
 }
 
 // Makes a plan that ends with the controls `next`, and advances the muscles' activations to its end.
@@ -254,6 +262,10 @@ Equilibrium TimeStepper::settle(const Controls& target, double tolerance, double
   } const settling(*this);
   motion_.activation = motion_.controls.activation = target.activation;  // muscles respond at once
   renew_conditions();
+
+  const double window = traits_.steps_per_observation * time_step();
+  while (!same_poses(motion_.controls.bone, target.bone))
+    advance(window, target);
 
   NodalVectors u, f;
   displacements(u);
