@@ -70,6 +70,25 @@ TEST(AssembledEstimate, is_found_again_where_the_bound_has_grown)
   EXPECT_EQ(search.steps_until_next(estimate, 0, 1.2 * rest), 200);
 }
 
+TEST(AssembledEstimate, falls_slowly_and_is_found_often_meanwhile)
+{
+  AssembledEstimate estimate;
+  Search search;
+  search.renew(estimate, 0);
+  double before = estimate.frequency_squared(rest);
+  // The search meets tissue in a soft moment, in which its bound is low, too.
+  search.found = 0.1 * rest;
+  for (int i = 0; i < 4; ++i)
+  {
+    EXPECT_EQ(search.steps_until_next(estimate, 0, 0.8 * rest), 200);
+    EXPECT_DOUBLE_EQ(estimate.frequency_squared(0.8 * rest), 0.7 * before);
+    before *= 0.7;
+  }
+  search.found = 0.3 * rest;
+  search.steps_until_next(estimate, 0, 0.8 * rest);
+  EXPECT_DOUBLE_EQ(estimate.frequency_squared(0.8 * rest), 1.25 * 0.3 * rest) << "it rises at once";
+}
+
 TEST(AssembledEstimate, looks_ahead_while_activations_grow)
 {
   AssembledEstimate estimate;

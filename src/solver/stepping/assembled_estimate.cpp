@@ -22,6 +22,9 @@ constexpr float activation_tolerance = 0.02F;  // replaces `activation_ahead` wh
 // If the bound at nodes grows by this factor, the estimate has grown with it, perhaps without need.
 constexpr double growth_allowed = 1.1;
 constexpr std::int64_t steps_until_growth_counts = 100;
+// The estimate falls by at most this factor per search. A search may meet vibrating tissue in a moment in which it is
+// soft, and the tissue stiffens again within a few dozen steps.
+constexpr double slowest_fall = 0.7;
 
 }  // namespace
 
@@ -47,7 +50,13 @@ void AssembledEstimate::renew(const std::vector<float>& activation, bool moving,
   else if (!grown)
     steps_valid_ = std::min(2 * steps_valid_, longest_valid);
   const double allowance = grown || steps_valid_ < longest_valid ? margin_in_motion : frequency_margin;
+  const double least = slowest_fall * share_ * bound_ / bound;
   share_ = found > 0 && std::isfinite(found) ? std::min(1.0, allowance * found / bound) : 1.0;
+  if (share_ < least)
+  {
+    share_ = std::min(1.0, least);
+    steps_valid_ = shortest_valid;
+  }
   steps_ = 0;
   bound_ = bound;
 }
