@@ -11,6 +11,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <memory>
 
 namespace frontalis
@@ -26,7 +27,7 @@ struct StabilityOptions
   StabilitySettings settings;
   std::string cases, json, table, markdown, models;
   std::string scenes;          ///< folder of the cases; empty: found by stability_folder()
-  std::string mesh_directory;  ///< folder of the meshes of the real head
+  std::string mesh_directory;  ///< folder of the meshes of the real head and face
 };
 
 // Folders in which files of the package may be: installed (share/ beside bin/ or lib/frontalis/), bundled, or sources.
@@ -54,7 +55,7 @@ std::string stability_folder(const std::string& given)
 // meshes that were not given.
 std::shared_ptr<const Model> stability_scene(const StabilityOptions& options, const std::string& name)
 {
-  const bool real = name == "real_head";
+  const bool real = name == "real_head" || name == "real_face";
   if (real && options.mesh_directory.empty())
     throw Skipped{ "needs meshes (--mesh-dir)" };
   const std::vector<fs::path> given{ options.scenes };
@@ -87,7 +88,14 @@ void run_stability(const StabilityOptions& options)
   Progress progress(nullptr);
   std::string name;
   StabilitySettings settings = options.settings;
-  settings.scene = [&](const std::string& scene) { return stability_scene(options, scene); };
+  std::map<std::string, std::shared_ptr<const Model>> scenes;  // several cases have the same scene
+  settings.scene = [&](const std::string& scene)
+  {
+    std::shared_ptr<const Model>& model = scenes[scene];
+    if (!model)
+      model = stability_scene(options, scene);
+    return model;
+  };
   settings.watch = [&](double done)
   {
     progress.update(name, done);
@@ -145,7 +153,7 @@ void add_stability_command(CLI::App& app)
   command->add_flag("--all", options->settings.long_runs, "run long cases too, and all of them in full length");
   add_backend_option(*command, options->settings.backend, false);
   command->add_option("--cases", options->cases, "folder of the cases' files (found beside the program)");
-  command->add_option("--mesh-dir", options->mesh_directory, "folder of the real head's meshes, which its case needs");
+  command->add_option("--mesh-dir", options->mesh_directory, "folder of the real head's meshes, which its cases need");
   command->add_option("--scenes", options->scenes,
                       "folder of the cases' scenes, or of models baked from them (found beside the program)");
   command->add_option("--models", options->models, "write the model of each motion to this folder");

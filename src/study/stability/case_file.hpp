@@ -26,6 +26,7 @@ public:
   double number(const std::string& key, const std::string& unit = {}) const { return numbers(key, unit, 1)[0]; }
   double seconds(const std::string& key) const;  ///< a time [s], which the file gives in ms or s
   std::array<std::int32_t, 3> size(const std::string& key = "size") const;  ///< a size in voxels
+  const std::vector<std::string>& words(const std::string& key) const { return values(key); }
 
   /// Keys of the file that no function has read.
   std::vector<std::string> unused() const;

@@ -90,7 +90,7 @@ void GuardedTrial::settle(const Controls& target, double factor)
   record();
 }
 
-void GuardedTrial::hold_or_stop(const std::function<void()>& play)
+void GuardedTrial::hold_or_stop(const std::function<void()>& play, const std::string& of)
 {
   try
   {
@@ -99,11 +99,21 @@ void GuardedTrial::hold_or_stop(const std::function<void()>& play)
   catch (const Unstable& stop)
   {
     Trial& trial = run_.trial;
-    trial.stopped = stop.what();
+    trial.stopped += (trial.stopped.empty() ? "" : " ") + (of.empty() ? "" : of + ": ") + stop.what();
     const bool names_voxel = stop.report.voxel >= 0 && !stop.report.advice.empty();
-    trial.checks.absolute("stopped in a state that is not finite", "", 0, solver_->monitor().finite ? 0 : 1, 0);
-    trial.checks.absolute("report names no voxel", "", 0, names_voxel ? 0 : 1, 0);
+    const std::string where = of.empty() ? "" : ", " + of;
+    trial.checks.absolute("stopped in a state that is not finite" + where, "", 0, solver_->monitor().finite ? 0 : 1, 0);
+    trial.checks.absolute("report names no voxel" + where, "", 0, names_voxel ? 0 : 1, 0);
   }
+}
+
+void GuardedTrial::start_over()
+{
+  run_.trial.steps += solver_->profile().steps;
+  solver_->reset();
+  guard_->restart();
+  worst_imbalance_ = most_hourglass_ = largest_ = 0;
+  moments_.clear();
 }
 
 void GuardedTrial::set(const Vectors& displacements, const Vectors& velocities)

@@ -55,7 +55,7 @@ std::vector<StabilityCase> stability_cases(const std::string& folder)
 {
   std::vector<StabilityCase> all;
   for (const auto& family : { hard_materials(), hard_shapes(), hard_muscles(), hard_constraints(), hard_contacts(),
-                              hard_slits(), hard_times() })
+                              hard_slits(), hard_faces(), hard_times() })
     for (const auto& [name, play] : family)
     {
       const CaseFile file((std::filesystem::path(folder) / (name + ".yaml")).string());
@@ -63,7 +63,8 @@ std::vector<StabilityCase> stability_cases(const std::string& folder)
       {
         CaseRun now{ file, settings, trial };
         play(now);
-        if (const auto unused = now.unused(); !unused.empty())
+        // a motion that was stopped has not come to all of its file
+        if (const auto unused = now.unused(); !unused.empty() && trial.stopped.empty())
           trial.failure = fmt::format("the case does not use {} of its file", fmt::join(unused, ", "));
       };
       all.push_back({ name, true, file.hard(), file.text(), run });

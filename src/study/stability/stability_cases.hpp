@@ -34,6 +34,7 @@ using CaseFunctions = std::vector<std::pair<std::string, void (*)(CaseRun&)>>;
 CaseFunctions hard_materials();
 CaseFunctions hard_shapes();
 CaseFunctions hard_muscles();
+CaseFunctions hard_faces();
 CaseFunctions hard_constraints();
 CaseFunctions hard_contacts();
 CaseFunctions hard_slits();
@@ -74,7 +75,10 @@ public:
   /// case's longest_settling [s of simulated time].
   void settle(const Controls& target, double factor = 1);
   /// Calls `play`. If the guard stops the motion, checks that its report names a voxel and that the state is finite.
-  void hold_or_stop(const std::function<void()>& play);
+  /// `of` names the motion in the report, where a case has several.
+  void hold_or_stop(const std::function<void()>& play, const std::string& of = {});
+  /// Returns to rest at time 0 for another motion of the same model, with records of its own.
+  void start_over();
   /// Sets displacements [m] and, unless empty, velocities [m/s]. The ledger starts again.
   void set(const Vectors& displacements, const Vectors& velocities = {});
 
