@@ -36,11 +36,13 @@ std::vector<std::string> chosen_expressions(const CaseRun& run, const Model& mod
   return all;
 }
 
-// Changes the controls within one time step and watches the motion for some time.
+// Asks for the controls within one time step and watches the motion for some time. Each part asks for the same
+// controls, because bones may be on their way to them.
 void switch_to(GuardedTrial& motion, const Controls& target, double seconds)
 {
   motion.advance({ motion.solver().time_step(), target });
-  motion.advance({ seconds, target, face_parts });
+  for (int part = 0; part < face_parts; ++part)
+    motion.advance({ seconds / face_parts, target });
 }
 
 // Switches each expression on from rest, in one step, and off.
