@@ -362,7 +362,7 @@ __device__ __forceinline__ void add_touch(const StepArguments& g, const TouchSte
   if (threadIdx.x == 0 && !touch.last)
   {
     const float nothing[3] = { 0, 0, 0 };
-    send(c.in_patches.ended[1 - touch.buffer] + touch.index, nothing, touch.mark + 1);
+    send(c.in_patches.ended[1 - touch.buffer] + touch.index, nothing, 0x80000000u | (touch.mark + 1));
   }
 }
 

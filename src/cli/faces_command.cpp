@@ -72,8 +72,10 @@ void measure_faces(FacesOptions& options)
     if (interrupt_requested())
       throw Interrupted();
   };
-  const std::unique_ptr<FineLines> fine_lines = FineLines::make(model, false);
+  std::unique_ptr<FineLines> fine_lines;
   if (!options.pictures.empty())
+  {
+    fine_lines = FineLines::make(model, false);
     options.settings.settled = [&](const std::string& name, const SkinState& skin, const Controls& controls)
     {
       if (!portrait)
@@ -85,6 +87,7 @@ void measure_faces(FacesOptions& options)
         fine_lines->add_settled(lined);
       pictures.emplace_back(name.empty() ? "rest" : name, portrait->draw(lined, controls));
     };
+  }
   std::vector<FaceRow> rows;
   std::vector<std::string> faults;
   for (const std::string& name : names)

@@ -127,7 +127,9 @@ void add_rest_command(CLI::App& app)
       ->add_option("--creases", options->creases,
                    "expressions whose folds stay in shells and fine lines: NAME,NAME,...")
       ->delimiter(',');
-  command->add_option("--set", options->set, "part of the folds' angles and of the lines' heights that stays, 0 to 1")
+  command
+      ->add_option("--set", options->set,
+                   "part of the folds that stays in the shape without moment, 0 to 1; a third of it shows")
       ->check(CLI::Range(0., 1.));
   command->add_flag("--neutral", options->neutral,
                     "place the skin so that it is where the scene has it once the tissue is in equilibrium");

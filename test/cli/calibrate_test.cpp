@@ -95,7 +95,8 @@ protected:
       }
       // the turn follows the lift
       Controls controls = value_controls(*robot, moved);
-      const auto turned = std::find(robot->bones.begin(), robot->bones.end(), joints.back().bone) - robot->bones.begin();
+      const auto turned =
+          std::find(robot->bones.begin(), robot->bones.end(), joints.back().bone) - robot->bones.begin();
       const RigidTransform lifted = motion_in_face(*robot, controls.bone[static_cast<std::size_t>(turned)]);
       const std::array<double, 3> before{ { -turned_about[0], -turned_about[1], -turned_about[2] } };
       const RigidTransform turn = composed(rigid_motion({ angle, 0, 0 }, turned_about), rigid_motion({}, before));

@@ -54,6 +54,7 @@ TEST(Faces, the_generated_head_raises_its_brows_frowns_smiles_and_blinks)
   const ProgramResult hard = run_program({ "stability", "--scenes", folder / "", "--only", "head_switched",
                                            "head_at_full", "head_torn_lips", "head_blinks" });
   EXPECT_EQ(hard.code, 0) << hard.output;
+  EXPECT_EQ(hard.output.find("skipped"), std::string::npos) << hard.output;
   auto found = faces({ head, "--only", "raise_brows,frown,smile,blink,raise_brows_left", "--seconds", "0.3" });
   ASSERT_EQ(found.size(), 5u);
   const auto half = found.extract("raise_brows_left");

@@ -69,13 +69,13 @@ TEST_P(BodiesTouch, a_body_that_comes_from_far_is_met)
   const auto near = make(block_and_finger(0)), far = make(block_and_finger(0));
   Controls controls = far->controls();
   controls.bone[1].translation[2] = 60e-3;
-  far->advance(1e-3, controls);
+  far->advance(10e-3, controls);
   controls.bone[1] = rigid_motion({ { 0, 3, 0 } }, { { 20e-3, 0, 30e-3 } });
-  far->advance(4e-3, controls);
+  far->advance(40e-3, controls);
   for (Solver* const solver : { near.get(), far.get() })
   {
     controls.bone[1] = RigidTransform();
-    solver->advance(2e-3, controls);
+    solver->advance(20e-3, controls);
     EXPECT_EQ(solver->reactions()[0].force[2], 0);
     controls.bone[1].translation[2] = -1e-3;
     solver->advance(10e-3, controls);

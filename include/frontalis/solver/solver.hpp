@@ -81,8 +81,9 @@ public:
   /// Throws the Error that advance() would throw: after divergence, or for an invalid duration or target.
   virtual void check(double seconds, const Controls& target) const = 0;
 
-  /// Dynamic relaxation (Underwood 1983): controls are set to `target` at once, and damping is critical for the lowest
-  /// frequency of the motion. Viscous stresses are fully relaxed meanwhile. The relaxation ends when the remaining
+  /// Dynamic relaxation (Underwood 1983): activations are set to `target` at once, bones go there as fast as they may,
+  /// and damping is critical for the lowest frequency of the motion. Viscous stresses are fully relaxed meanwhile. The
+  /// relaxation ends when the remaining
   /// motion, estimated from speed, damping and lowest frequency, is within `tolerance` of the displacement
   /// (mass-weighted norms), or after `seconds` of simulated time. `go_on` is called with the progress and ends the
   /// relaxation by returning false. Throws Error like advance().

@@ -24,8 +24,8 @@ struct Actuator
   std::array<double, 3> about{};  ///< point of the face frame about which bones turn [mm]
 };
 
-/// Reads the entry `actuators` of a file (YAML, doc/robots.md). Throws Error with the file's line, also if actuators turn
-/// a bone about different points.
+/// Reads the entry `actuators` of a file (YAML, doc/robots.md). Throws Error with the file's line, also if actuators
+/// turn a bone about different points.
 std::vector<Actuator> read_actuators(const std::string& path);
 
 /// Positions and efforts of actuators at several times.

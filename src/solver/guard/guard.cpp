@@ -287,7 +287,7 @@ void Guard::advance(double seconds, const Controls& target)
       for (std::size_t m = 0; m < to.activation.size(); ++m)
         g.activation[m] = std::max({ g.activation[m], to.activation[m], g.solver.activation()[m] });
       for (std::size_t b = 0; b < to.bone.size(); ++b)
-        g.bone_way[b] += farthest_way(from[b], to.bone[b], far_corner(*g.model));
+        g.bone_way[b] += farthest_way(from[b], g.solver.controls().bone[b], far_corner(*g.model));
       return g.steps() - g.checked_at >= g.settings.interval ? g.check() : Instability::none;
     };
     const Instability finding = attempted(go);

@@ -1,5 +1,6 @@
 #include "frontalis/solver/fine_lines.hpp"
 
+#include "frontalis/error.hpp"
 #include "solver/skin/bound_points.hpp"
 #include "solver/skin/film_equilibrium.hpp"
 
@@ -154,6 +155,8 @@ void FineLines::add_to(SkinState& skin, bool wait)
 void FineLines::add_settled(SkinState& skin)
 {
   constexpr int most_frames = 12;
+  if (self_->thread.joinable())
+    throw Error("lines of a skin that stands still are not found by a separate thread");
   self_->found.clear();
   self_->place(skin);
   bool settled = false;

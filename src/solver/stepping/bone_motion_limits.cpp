@@ -44,21 +44,7 @@ BoneMotionLimits::BoneMotionLimits(const Model& model, double critical_step)
 {
   constexpr double far = std::numeric_limits<double>::infinity();
   reach_.assign(model.bones.size(), { { { far, far, far } }, { { -far, -far, -far } } });
-  const auto moves = [&](std::int32_t bone, const std::array<double, 3>& p)
-  {
-    if (bone >= 0)
-      reach_[bone].include(p);
-  };
-  for (const RigidNode& node : model.rigid)
-    moves(node.bone, rest_position(model, node.node));
-  for (const SlidingNode& node : model.sliding)
-    moves(model.constraint_surfaces[node.surface].bone, rest_position(model, node.node));
-  for (const AttachedNode& node : model.attached)
-    moves(node.surface >= 0 ? model.constraint_surfaces[node.surface].bone : node.bone,
-          rest_position(model, node.node));
-  for (const Contact& contact : model.contacts)
-    for (const auto& point : contact.points)
-      moves(contact.bone, point);
+  each_point_on_bones(model, [&](std::int32_t bone, const std::array<double, 3>& p) { reach_[bone].include(p); });
 }
 
 BoneMotionLimits::Poses BoneMotionLimits::reached(const Poses& from, const Poses& to, double seconds) const

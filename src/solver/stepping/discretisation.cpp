@@ -360,4 +360,24 @@ void Discretisation::voxel(std::size_t e, VoxelProperties& out) const
     out.density *= double(mass_factor_[e]);
 }
 
+void each_point_on_bones(const Model& model,
+                         const std::function<void(std::int32_t bone, const std::array<double, 3>& at)>& visit)
+{
+  const auto moves = [&](std::int32_t bone, const std::array<double, 3>& p)
+  {
+    if (bone >= 0)
+      visit(bone, p);
+  };
+  for (const RigidNode& node : model.rigid)
+    moves(node.bone, rest_position(model, node.node));
+  for (const SlidingNode& node : model.sliding)
+    moves(model.constraint_surfaces[node.surface].bone, rest_position(model, node.node));
+  for (const AttachedNode& node : model.attached)
+    moves(node.surface >= 0 ? model.constraint_surfaces[node.surface].bone : node.bone,
+          rest_position(model, node.node));
+  for (const Contact& contact : model.contacts)
+    for (const auto& point : contact.points)
+      moves(contact.bone, point);
+}
+
 }  // namespace frontalis

@@ -7,6 +7,7 @@
 #include "solver/stepping/array_list.hpp"
 
 #include <array>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -114,6 +115,10 @@ private:
   EffectSet running_;
   std::vector<float> mass_factor_;  // one per voxel; empty without mass scaling
 };
+
+/// Calls visit(bone, place at rest [m]) for all nodes and points that bones hold, guide or may push.
+void each_point_on_bones(const Model& model,
+                         const std::function<void(std::int32_t bone, const std::array<double, 3>& at)>& visit);
 
 /// The corner of the grid opposite to its origin [m].
 inline std::array<double, 3> far_corner(const Model& model)

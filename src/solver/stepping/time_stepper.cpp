@@ -263,14 +263,17 @@ Equilibrium TimeStepper::settle(const Controls& target, double tolerance, double
   motion_.activation = motion_.controls.activation = target.activation;  // muscles respond at once
   renew_conditions();
 
-  const double window = traits_.steps_per_observation * time_step();
-  while (!same_poses(motion_.controls.bone, target.bone))
-    advance(window, target);
+  const double begin = motion_.time;
+  while (!same_poses(motion_.controls.bone, target.bone) && motion_.time - begin < seconds)
+  {
+    advance(traits_.steps_per_observation * time_step(), target);
+    if (go_on && !go_on({}))
+      return {};
+  }
 
   NodalVectors u, f;
   displacements(u);
   internal_forces(f);
-  const double begin = motion_.time;
   const int longest_window = std::max(1, steps_per_window / traits_.steps_per_observation);
   DynamicRelaxation relaxation({ tolerance, model_->damping, longest_window }, discretisation_.node_mass, begin, u, f);
   const auto forces = [this](NodalVectors& out) { internal_forces(out); };

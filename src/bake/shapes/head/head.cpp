@@ -26,7 +26,7 @@ constexpr double hair_slope = 0.35;
 constexpr double hair_rise = 3e-3;  // [m] over which hair rises with this slope
 // By which the surface of hair goes on, under the skin, beyond the hairline [m]: its edge must stay below skin that
 // moves, by 1.5 mm inwards as the brows rise.
-constexpr double hair_margin = 7e-3;
+constexpr double hair_margin = 5.5e-3;
 constexpr double hairline_wave = 1e-3;  // [m] by which locks shift the hairline
 constexpr double lock_height = 0.12;    // height of a lock divided by the thickness of the hair
 
