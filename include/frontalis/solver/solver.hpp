@@ -83,10 +83,9 @@ public:
 
   /// Dynamic relaxation (Underwood 1983): activations are set to `target` at once, bones go there as fast as they may,
   /// and damping is critical for the lowest frequency of the motion. Viscous stresses are fully relaxed meanwhile. The
-  /// relaxation ends when the remaining
-  /// motion, estimated from speed, damping and lowest frequency, is within `tolerance` of the displacement
-  /// (mass-weighted norms), or after `seconds` of simulated time. `go_on` is called with the progress and ends the
-  /// relaxation by returning false. Throws Error like advance().
+  /// relaxation ends when the remaining motion, estimated from speed, damping and lowest frequency, is within
+  /// `tolerance` of the displacement (mass-weighted norms), or after `seconds` of simulated time. `go_on` is called
+  /// with the progress and ends the relaxation by returning false. Throws Error like advance().
   virtual Equilibrium settle(const Controls& target, double tolerance, double seconds,
                              const std::function<bool(const Equilibrium&)>& go_on = {}) = 0;
 

@@ -151,8 +151,8 @@ void write_stability(const Trials& trials, const std::string& folder)
       "finite.\n\n*Worst J* is the smallest volume ratio of a voxel, *energy* the imbalance of the energy ledger, and "
       "*hourglass* the energy of hourglass modes, both over the largest term of the ledger. Each case has a file in "
       "test/stability with its description, sizes, times and bounds. This document is written by `./dev cli stability "
-      "--all --mesh-dir DIR --markdown doc`, and its figures are from one run of it where nothing else is said. `--models DIR` "
-      "writes the model of each motion.\n";
+      "--all --mesh-dir DIR --markdown doc`, and its figures are from one run of it where nothing else is said. "
+      "`--models DIR` writes the model of each motion.\n";
   out += "\n" + trials_markdown(trials);
   // A text written by hand about runs on other machines.
   std::ifstream elsewhere(pictures / "elsewhere.md");
