@@ -2,7 +2,7 @@
 """Draws the parametric head: draw_head.py SURFACES CAGE.obj PICTURES
 
 SURFACES is the folder that `frontalis bake config/head.yaml --surfaces SURFACES -o MODEL` writes, CAGE.obj the control cage, whose groups
-colour the skin. Writes skin.png, close.png, skull.png, muscles.png and holds.png to the folder PICTURES. Needs python3-vtk9; without a
+colour the skin. Writes skin.png, close.png, skull.png, muscles.png and holds.png to the folder PICTURES. Needs python3-vtk9 and python3-numpy; without a
 display run it under xvfb-run.
 """
 import colorsys
