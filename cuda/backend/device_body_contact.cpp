@@ -23,14 +23,7 @@ std::uint32_t most_touching_points(const Model& model, const VoxelPatches& patch
   for (const Contact& contact : model.contacts)
     for (std::size_t p = 0; p < contact.points.size(); ++p)
       in_voxel[contact.binding.voxel[p]] += contact.area[p] > 0 ? 1 : 0;
-  std::uint32_t most = 0;
-  for (const Patch& patch : patches.patches)
-  {
-    const auto voxel = patches.voxel.begin() + patch.voxel_begin;
-    most = std::max(most, std::accumulate(voxel, voxel + patch.voxels, 0u,
-                                          [&](std::uint32_t sum, std::uint32_t e) { return sum + in_voxel[e]; }));
-  }
-  return most;
+  return patches.most_in_patch(in_voxel);
 }
 
 DeviceBodyContact::DeviceBodyContact(const Model& model, const Discretisation& discretisation, const VoxelCut& cut,

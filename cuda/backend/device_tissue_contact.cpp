@@ -4,7 +4,6 @@
 #include "cuda/kernels/tissue_contact_kernels.hpp"
 #include "frontalis/physics/surface_vertex.hpp"
 
-#include <algorithm>
 #include <numeric>
 
 namespace frontalis
@@ -46,14 +45,7 @@ std::uint32_t most_touching_vertices(const Model& model, const VoxelPatches& pat
   std::vector<std::uint32_t> in_voxel(model.voxels.size(), 0);
   for (const auto& vertex : TouchingSurface(model).vertices)
     ++in_voxel[vertex.voxel];
-  std::uint32_t most = 0;
-  for (const Patch& patch : patches.patches)
-  {
-    const auto voxel = patches.voxel.begin() + patch.voxel_begin;
-    most = std::max(most, std::accumulate(voxel, voxel + patch.voxels, 0u,
-                                          [&](std::uint32_t sum, std::uint32_t e) { return sum + in_voxel[e]; }));
-  }
-  return most;
+  return patches.most_in_patch(in_voxel);
 }
 
 DeviceTissueContact::DeviceTissueContact(const Model& model, const Discretisation& discretisation, const VoxelCut& cut,

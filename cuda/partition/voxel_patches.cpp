@@ -294,6 +294,18 @@ std::uint32_t VoxelPatches::place_of(std::size_t index, std::uint32_t node) cons
   return static_cast<std::uint32_t>(std::lower_bound(first, first + patch.halo, node) - first);
 }
 
+std::uint32_t VoxelPatches::most_in_patch(const std::vector<std::uint32_t>& in_voxel) const
+{
+  std::uint32_t most = 0;
+  for (const Patch& patch : patches)
+  {
+    const auto first = voxel.begin() + patch.voxel_begin;
+    most = std::max(most, std::accumulate(first, first + patch.voxels, 0u,
+                                          [&](std::uint32_t sum, std::uint32_t e) { return sum + in_voxel[e]; }));
+  }
+  return most;
+}
+
 void VoxelPatches::add_patch(const Model& model, std::size_t index, const std::vector<std::uint32_t>& voxels)
 {
   const Patch& patch = patches[index];

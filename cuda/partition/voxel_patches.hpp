@@ -50,6 +50,8 @@ struct VoxelPatches
 
   /// Index in shared memory of a device node of the patch.
   std::uint32_t place_of(std::size_t patch, std::uint32_t node) const;
+  /// Largest sum over the voxels of a patch, of numbers given for each voxel of the model.
+  std::uint32_t most_in_patch(const std::vector<std::uint32_t>& in_voxel) const;
 
   std::vector<Patch> patches;
   /// model voxels; in each patch those with laws other than neo-Hookean come first, then viscous ones, then the others

@@ -26,7 +26,7 @@ public:
   bool jumps(const Poses& from, const Poses& to, double seconds, double step) const;
   /// Records a motion that has started, with which jumps() compares the next motion.
   void moved(const Poses& from, double seconds);
-  void archive(ByteArchive& archive) { archive(before_)(seconds_); }
+  void archive(ByteArchive& archive) { archive(before_)(seconds_)(top_speed_); }
 
 private:
   // A box around the tissue that a bone can move.
