@@ -84,8 +84,8 @@ TEST(Faces, the_generated_head_raises_its_brows_frowns_smiles_and_blinks)
   }
   // the lines of the forehead are those of people: across it, 8 to 16 mm apart, 0.5 to 2.5 mm deep
   const ProgramResult run =
-      run_program({ "run", head, "--expression", "raise_brows", "--ramp", "0.15", "--seconds", "0.25", "--frame-rate",
-                    "20", "--frames", folder / "frames", "--wrinkles-in=-40,14,40,60" });
+      run_program({ "run", head, "--expression", "raise_brows", "--ramp", "0.2", "--seconds", "0.4", "--frame-rate",
+                    "10", "--frames", folder / "frames", "--wrinkles-in=-40,0,40,60" });
   ASSERT_EQ(run.code, 0) << run.errors;
   const nlohmann::json lines = json_from(text_of(folder / "frames/run.json")).at("wrinkles");
   EXPECT_GT(std::abs(lines.at("direction").at(1).get<double>()), 0.95) << lines;
