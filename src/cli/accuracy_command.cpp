@@ -123,6 +123,7 @@ ClosedForm scene_subject(const AccuracyOptions& options)
        options.quick ? std::vector<double>{ 2, 1.5, 1, 0.75, 0.5 } : std::vector<double>{ 1.5, 1, 0.75, 0.5, 0.375 })
     plan.edges.push_back(factor * plan.standard.profile.voxel[0]);
   take_options(options, plan);
+  plan.check();  // before the first bake
 
   // The meshes are hashed once, because they are the same for all settings.
   Scene bare = scene_with(scene, {});

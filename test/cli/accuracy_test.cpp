@@ -92,6 +92,11 @@ TEST_F(AccuracyCommand, refuses_what_cannot_be)
                   "nor a body of that name with a closed form: cantilever, stretched_block, active_bar");
   EXPECT_EQ(run({ "--tolerance", "1", "--time", "1" }).code, 2);
   EXPECT_EQ(run({ "--save", folder / "chosen.yaml" }).code, 2);
+  // before anything is baked, which this scene cannot be
+  std::string unbakeable = bar;
+  const std::string box = "shape: box, centre: [0, 0, 16], size: [14, 14, 2]";
+  unbakeable.replace(unbakeable.find(box), box.size(), "file: missing.obj");
+  std::ofstream(scene) << unbakeable;
   const ProgramResult few = run_program({ "accuracy", scene, "--voxels", "5,2.5", "-o", results });
   EXPECT_EQ(few.code, 1);
   expect_contains(few.errors, "at least three are needed");

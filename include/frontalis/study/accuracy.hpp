@@ -51,6 +51,7 @@ struct AccuracyPlan
   double budget = 0;       ///< wall seconds that the study may take; 0: no limit
   bool quick = false;      ///< fewer settings per knob
   int threads = 0;         ///< CPU threads; 0: one per core
+  void check() const;      ///< throws Error if a knob is unknown or the voxel edges cannot be compared
 };
 
 /// Difference of skin displacements from those of the reference or the closed form [m]; `rms` is weighted by area.
@@ -90,11 +91,10 @@ struct AccuracyRow : VariantCost
   double voxels = NAN;
 };
 
-/// Indices of the rows in which one knob varies.
 struct KnobLine
 {
   std::string knob, words;        ///< names on the command line and in plots
-  std::vector<std::size_t> rows;  ///< indices into AccuracyFindings::rows
+  std::vector<std::size_t> rows;  ///< indices into AccuracyFindings::rows; one knob varies in them
 };
 
 struct AccuracyFindings
@@ -118,8 +118,8 @@ struct AccuracyFindings
 using AccuracyProgress = std::function<bool(const std::string& setting, double done, double seconds_left)>;
 
 std::vector<std::string> knob_names();
-/// Measures the error and the cost of each setting. Throws Error if a knob is unknown, the budget is too small for a
-/// comparison, the reference diverges or the folder cannot be written.
+/// Measures each setting. Throws Error as AccuracyPlan::check() does, and if the budget is too small for a comparison,
+/// the reference diverges or the folder cannot be written.
 AccuracyFindings study_accuracy(const AccuracyPlan& plan, const ModelMaker& maker, const AccuracyProgress& progress);
 
 /// All rows with their figures; those on the Pareto front are marked.
@@ -136,7 +136,8 @@ std::string profile_text(const AccuracyRow& row, const std::string& name, const 
 const AccuracyRow& cheapest_within(const AccuracyFindings& findings, double tolerance);
 const AccuracyRow& most_accurate_within(const AccuracyFindings& findings, double seconds);
 
-/// A body whose equilibrium is known in closed form, and the plan of its study.
+/// A body whose equilibrium is known in closed form ("cantilever", "stretched_block", "active_bar";
+/// accuracy_closed_forms.cpp has their sources), and the plan of its study.
 struct ClosedForm
 {
   std::string name;
@@ -144,7 +145,6 @@ struct ClosedForm
   ModelMaker maker;
 };
 
-/// "cantilever", "stretched_block" and "active_bar"; accuracy_closed_forms.cpp has their sources.
 std::vector<ClosedForm> closed_forms();
 
 }  // namespace frontalis

@@ -19,6 +19,11 @@ namespace
 
 constexpr double averaged_voxels = 1.5;  // standard deviation of the average, in voxels of the standard setting
 
+bool is_too_fine(const AccuracySetting& setting, const AccuracyPlan& plan)
+{
+  return !plan.exact && setting.profile.voxel[0] < 1.01 * plan.edges.back();
+}
+
 class Study
 {
 public:
@@ -43,11 +48,6 @@ private:
   // Number of voxel edges for variants. Without a closed form the last edge is for the reference only.
   std::size_t variant_levels() const { return plan_.edges.size() - (plan_.exact ? 0 : 1); }
   const VariantMotion& motion_of(std::size_t variant) const { return bench_.done()[variant].motion; }
-  bool is_too_fine(const AccuracySetting& setting) const
-  {
-    return !plan_.exact && setting.profile.voxel[0] < 1.01 * plan_.edges.back();
-  }
-
   AccuracyPlan plan_;
   VariantBench bench_;
   std::size_t reference_ = 0;
@@ -114,7 +114,7 @@ void Study::measure_knobs()
     for (const AccuracySetting& setting : sweep.settings)
     {
       const std::string& profile = setting.profile.name;
-      if (is_too_fine(setting))
+      if (is_too_fine(setting, plan_))
         findings_.notes.push_back("Profile '" + profile +
                                   "' was left out, since its voxels are as small as the reference's.");
       else if (bench_.fits(setting))
@@ -185,17 +185,6 @@ void Study::check_reference()
 
 AccuracyFindings Study::run()
 {
-  const auto known = knob_names();
-  for (const std::string& knob : plan_.knobs)
-    if (std::find(known.begin(), known.end(), knob) == known.end())
-      throw Error(fmt::format("no knob is called '{}'; the knobs are {}", knob, fmt::join(known, ", ")));
-  if (plan_.edges.size() < 3 || !std::is_sorted(plan_.edges.rbegin(), plan_.edges.rend()) ||
-      std::adjacent_find(plan_.edges.begin(), plan_.edges.end()) != plan_.edges.end())
-    throw Error(
-        "voxel edges: at least three are needed, each smaller than the one before; the last is the reference's");
-  if (is_too_fine(plan_.standard))
-    throw Error("voxel edges: the smallest, the reference's, is " + millimetres(plan_.edges.back()) +
-                "; it must be smaller than the standard setting's, " + millimetres(plan_.standard.profile.voxel[0]));
   findings_.standard = plan_.standard;
   findings_.closed_form = static_cast<bool>(plan_.exact);
   try
@@ -242,8 +231,24 @@ AccuracyFindings Study::run()
 
 }  // namespace
 
+void AccuracyPlan::check() const
+{
+  const auto known = knob_names();
+  for (const std::string& knob : knobs)
+    if (std::find(known.begin(), known.end(), knob) == known.end())
+      throw Error(fmt::format("no knob is called '{}'; the knobs are {}", knob, fmt::join(known, ", ")));
+  if (edges.size() < 3 || !std::is_sorted(edges.rbegin(), edges.rend()) ||
+      std::adjacent_find(edges.begin(), edges.end()) != edges.end())
+    throw Error(
+        "voxel edges: at least three are needed, each smaller than the one before; the last is the reference's");
+  if (is_too_fine(standard, *this))
+    throw Error("voxel edges: the smallest, the reference's, is " + millimetres(edges.back()) +
+                "; it must be smaller than the standard setting's, " + millimetres(standard.profile.voxel[0]));
+}
+
 AccuracyFindings study_accuracy(const AccuracyPlan& plan, const ModelMaker& maker, const AccuracyProgress& progress)
 {
+  plan.check();
   return Study(plan, maker, progress).run();
 }
 
