@@ -94,8 +94,8 @@ TEST_F(AccuracyCommand, refuses_what_cannot_be)
   EXPECT_EQ(run({ "--save", folder / "chosen.yaml" }).code, 2);
   // before anything is baked, which this scene cannot be
   std::string unbakeable = bar;
-  const std::string box = "shape: box, centre: [0, 0, 16], size: [14, 14, 2]";
-  unbakeable.replace(unbakeable.find(box), box.size(), "file: missing.obj");
+  const std::string where = "centre: [0, 0, 16]";
+  unbakeable.replace(unbakeable.find(where), where.size(), "centre: [0, 0, 99]");
   std::ofstream(scene) << unbakeable;
   const ProgramResult few = run_program({ "accuracy", scene, "--voxels", "5,2.5", "-o", results });
   EXPECT_EQ(few.code, 1);
