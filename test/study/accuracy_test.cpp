@@ -285,6 +285,23 @@ TEST_F(Accuracy, settings_that_diverge_or_have_no_model_stay_in_the_table)
   EXPECT_NE(table.find("no model: no such bar"), std::string::npos);
 }
 
+TEST_F(Accuracy, settings_that_diverge_while_they_are_timed_stay_in_the_table)
+{
+  plan.knobs = { "hourglass" };
+  study();
+  for (const auto& entry : std::filesystem::directory_iterator(plan.folder + "/variants"))
+    if (entry.path().extension() == ".cost")
+      std::filesystem::remove(entry.path());
+  maker.bake = [](const AccuracySetting& setting)
+  {
+    Model model = bar(setting);
+    if (!setting.profile.assumed_strain)
+      model.gravity = { { 0, 0, -1e6 } };
+    return model;
+  };
+  EXPECT_EQ(row_named(study(), "standard").fault.rfind("unstable when switched on at once: ", 0), 0U);
+}
+
 TEST_F(Accuracy, bad_plans_are_told)
 {
   plan.knobs = { "voxel", "colour" };

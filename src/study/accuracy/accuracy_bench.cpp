@@ -207,17 +207,24 @@ std::size_t VariantBench::measure(const AccuracySetting& setting, const std::str
       learn(setting, wall_seconds() - begin);
     }
     if (motion->fault.empty() && !is_reference(setting))
-    {
-      cost = time_variant(model, setting, plan_.history, plan_.threads, plan_.quick ? 0.3 : 1);
-      cost->memory += bytes;
-      cost->build = build;
-      keep(key, *cost);
-      if (kept)
+      try
       {
-        timing_ = wall_seconds() - begin;
-        learn(setting, build + with_settling * motion->steps * cost->step * (plan_.history.ramp + plan_.history.hold));
+        cost = time_variant(model, setting, plan_.history, plan_.threads, plan_.quick ? 0.3 : 1);
+        cost->memory += bytes;
+        cost->build = build;
+        keep(key, *cost);
+        if (kept)
+        {
+          timing_ = wall_seconds() - begin;
+          learn(setting,
+                build + with_settling * motion->steps * cost->step * (plan_.history.ramp + plan_.history.hold));
+        }
       }
-    }
+      // Timing switches the activations on at once, which is harder on a model than their growth in the motion.
+      catch (const Diverged& error)
+      {
+        motion->fault = std::string("unstable when switched on at once: ") + error.what();
+      }
   }
   measured.motion = *std::move(motion);
   measured.cost = cost.value_or(VariantCost());
