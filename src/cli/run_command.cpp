@@ -255,7 +255,9 @@ void measure(const RunOptions& options, const Model& model, RunSummary& summary)
   };
   try
   {
-    summary.wrinkles = measure_wrinkles(summary.rest, summary.end, model.skin.triangles, settings, go_on);
+    const auto half = [&](double begin) { return [&go_on, begin](double done) { go_on(begin + 0.5 * done); }; };
+    const WrinkleMeter meter(summary.rest, model.skin.triangles, settings, half(0));
+    summary.wrinkles = meter.measure(summary.end, half(0.5));
   }
   catch (const Interrupted&)
   {
