@@ -255,9 +255,7 @@ void measure(const RunOptions& options, const Model& model, RunSummary& summary)
   };
   try
   {
-    const auto half = [&](double begin) { return [&go_on, begin](double done) { go_on(begin + 0.5 * done); }; };
-    const WrinkleMeter meter(summary.rest, model.skin.triangles, settings, half(0));
-    summary.wrinkles = meter.measure(summary.end, half(0.5));
+    summary.wrinkles = WrinkleMeter(summary.rest, model.skin.triangles, settings, go_on).measure(summary.end, go_on);
   }
   catch (const Interrupted&)
   {
