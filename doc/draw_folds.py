@@ -2,15 +2,21 @@
 """Draws skins in raking light: draw_folds.py PICTURE.png TITLE=FILE.ply ...
 
 FILE.ply is a frame that `frontalis run SCENE --frames FOLDER` wrote. The light comes from above, which shows lines
-across the forehead; TITLE=left:FILE.ply has it from the subject's left, for lines that run up. A single row of skins is
-drawn larger. Needs python3-vtk9; without a display run it under xvfb-run.
+across the forehead; TITLE=left:FILE.ply has it from the subject's left, for lines that run up. On heads, `brows:` and
+`root:` show what is between the brows, lit from the left and from above, and `eye:` what is beside the left eye. A
+single row of skins is drawn larger. Needs python3-vtk9; without a display run it under xvfb-run.
 """
 import sys
 
 import vtk
 
 COLUMNS = 3
-LIGHTS = {"above": (0.25, 0.35, 1.0), "left": (0.35, 1.0, 0.2)}
+# of each view: where the light comes from; middle [m], direction towards the camera, half of the height [m]
+FOREHEAD = (0, 0, 0.043), (1, 0, 0.084), 0.05
+BROWS = (0, 0, 0.014), (1, 0, 0.1), 0.032
+VIEWS = {"above": ((0.25, 0.35, 1.0), *FOREHEAD), "left": ((0.35, 1.0, 0.2), *FOREHEAD),
+         "brows": ((0.4, 0.9, 0.45), *BROWS), "root": ((0.4, 0.2, 1.0), *BROWS),
+         "eye": ((0.5, 0.1, 1.0), (-0.015, 0.05, -0.01), (0.7, 0.7, 0.1), 0.026)}
 
 
 def read(path):
@@ -28,7 +34,8 @@ def draw(meshes, picture):
     width, height = (296, 232) if rows > 1 else (480, 376)
     window.SetSize(width * columns, height * rows)
     window.SetMultiSamples(8)
-    for k, (title, light_from, mesh) in enumerate(meshes):
+    for k, (title, view, mesh) in enumerate(meshes):
+        light_from, middle, towards, half = VIEWS[view]
         normals = vtk.vtkPolyDataNormals()
         normals.SetInputData(mesh)
         normals.SplittingOff()
@@ -45,7 +52,7 @@ def draw(meshes, picture):
         renderer.SetBackground(1, 1, 1)
         renderer.AddActor(actor)
         renderer.AutomaticLightCreationOff()
-        for place, strength in ((LIGHTS[light_from], 1.0), ((1.0, 0.0, 0.0), 0.18)):
+        for place, strength in ((light_from, 1.0), (towards, 0.18)):
             light = vtk.vtkLight()
             light.SetLightTypeToSceneLight()
             light.SetPosition(*place)
@@ -61,11 +68,11 @@ def draw(meshes, picture):
         label.GetTextProperty().SetFontSize(14)
         renderer.AddActor2D(label)
         camera = renderer.GetActiveCamera()
-        camera.SetFocalPoint(0.0, 0, 0.043)
-        camera.SetPosition(0.5, 0, 0.085)
+        camera.SetFocalPoint(*middle)
+        camera.SetPosition(*(m + 0.5 * t for m, t in zip(middle, towards)))
         camera.SetViewUp(0, 0, 1)
         camera.SetParallelProjection(1)
-        camera.SetParallelScale(0.05)
+        camera.SetParallelScale(half)
         renderer.ResetCameraClippingRange()
         window.AddRenderer(renderer)
     window.Render()
@@ -81,8 +88,8 @@ def draw(meshes, picture):
 def main(picture, frames):
     meshes = []
     for title, path in (f.split("=", 1) for f in frames):
-        light_from, path = path.split(":", 1) if ":" in path else ("above", path)
-        meshes.append((title, light_from, read(path)))
+        view, path = path.split(":", 1) if ":" in path else ("above", path)
+        meshes.append((title, view, read(path)))
     draw(meshes, picture)
 
 

@@ -17,11 +17,13 @@ inline Model film_model(double stiffness_ratio)
 {
   Model model;
   model.spacing = { { 1e-4, 1e-4, 1e-4 } };
-  model.film.thickness = film_thickness;
-  model.film.base_modulus = 1e5;
-  model.film.modulus = stiffness_ratio * model.film.base_modulus;
-  model.film.poisson = 0.49;
-  const double edge = film_wavelength(model.film) / 6;
+  FilmLaw law;
+  law.thickness = film_thickness;
+  law.base_modulus = 1e5;
+  law.modulus = stiffness_ratio * law.base_modulus;
+  law.poisson = 0.49;
+  model.film.laws = { law };
+  const double edge = film_wavelength(law) / 6;
   constexpr std::int32_t n = 60;
   std::uint32_t state = 1;
   const auto shift = [&](std::int32_t i)
@@ -40,6 +42,7 @@ inline Model film_model(double stiffness_ratio)
       model.skin.triangles.push_back({ { (i + j) % 2 == 0 ? b : a, d, c } });
     }
   model.film.carried = model.skin.triangles;
+  model.film.law.assign(model.skin.vertices.size(), 0);
   return model;
 }
 

@@ -80,7 +80,7 @@ void change_rest(const RestOptions& options)
     throw WrongUsage("nothing to change: give --creases, --neutral or both");
   const auto before = std::make_shared<const Model>(obtain_model(options.source));
   Model model = *before;
-  if (!options.creases.empty() && model.shells.empty() && model.film.thickness <= 0)
+  if (!options.creases.empty() && model.shells.empty() && model.film.laws.empty())
     throw Error(options.source.path +
                 ": no layer is a shell ('shell: true') and the skin has no fine_lines; creases stay in these alone");
   if (options.neutral)

@@ -255,7 +255,7 @@ void measure(const RunOptions& options, const Model& model, RunSummary& summary)
   };
   try
   {
-    summary.wrinkles = measure_wrinkles(summary.rest, summary.end, model.skin.triangles, settings, go_on);
+    summary.wrinkles = WrinkleMeter(summary.rest, model.skin.triangles, settings, go_on).measure(summary.end, go_on);
   }
   catch (const Interrupted&)
   {

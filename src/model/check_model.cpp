@@ -260,13 +260,18 @@ void check_settings(const Model& model)
 void check_film(const Model& model)
 {
   const SkinFilm& film = model.film;
-  if (film.thickness == 0)
+  if (film.laws.empty())
     return;
-  check_positive("film (thickness)", 0, film.thickness);
-  check_positive("film (modulus)", 0, film.modulus);
-  check_positive("film (base_modulus)", 0, film.base_modulus);
-  check_finite("film (poisson)", 0, film.poisson);
-  check_not_negative("film", "stretch", film.stretch);
+  for (std::size_t l = 0; l < film.laws.size(); ++l)
+  {
+    check_positive("film (thickness)", l, film.laws[l].thickness);
+    check_positive("film (modulus)", l, film.laws[l].modulus);
+    check_positive("film (base_modulus)", l, film.laws[l].base_modulus);
+    check_finite("film (poisson)", l, film.laws[l].poisson);
+    check_not_negative("film", "stretch", film.laws[l].stretch);
+  }
+  check_length("film/law", film.law.size(), model.skin.vertices.size(), "vertex of the skin");
+  check_each("film/law", index_below(film.laws.size(), -1), film.law);
   if (!film.crease.empty() && film.crease.size() != model.skin.vertices.size())
     fail("film/crease", "has {} entries; the skin has {} vertices", film.crease.size(), model.skin.vertices.size());
   for (std::size_t v = 0; v < film.crease.size(); ++v)

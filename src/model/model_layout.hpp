@@ -124,13 +124,12 @@ void exchange_model(Archive& archive, AnyModel& model)
 
   exchange_mesh(archive, "skin", model.skin);
   exchange_binding(archive, "skin", model.skin_binding);
-  if (archive.group_if(model.film.thickness > 0, "film"))
+  if (archive.group_if(!model.film.laws.empty(), "film"))
   {
-    archive("film/thickness", model.film.thickness);
-    archive("film/modulus", model.film.modulus);
-    archive("film/poisson", model.film.poisson);
-    archive("film/base_modulus", model.film.base_modulus);
-    archive("film/stretch", model.film.stretch);
+    archive.table("film", model.film.laws, Column{ "thickness", &FilmLaw::thickness },
+                  Column{ "modulus", &FilmLaw::modulus }, Column{ "poisson", &FilmLaw::poisson },
+                  Column{ "base_modulus", &FilmLaw::base_modulus }, Column{ "stretch", &FilmLaw::stretch });
+    archive("film/law", model.film.law);
     archive("film/carried", model.film.carried);
     archive("film/parents", model.film.parents);
     if (archive.group_if(!model.film.crease.empty(), "film/crease"))

@@ -135,7 +135,7 @@ void FaceNode::replace_face(const FaceParameters& parameters)
   std::shared_ptr<Runner> before;
   {
     const std::scoped_lock lock(runner_mutex_, frame_mutex_);
-    publisher_.start(model, frame_name, parameters.parent_frame, made->description());
+    publisher_.start(model, frame_name, parameters.parent_frame, made->description(), parameters.wrinkles_in);
     publisher_.set_colour(parameters.skin_colour, parameters.skin_field, parameters.colour_range);
     present_face_ = face;
     frame_ = Frame();

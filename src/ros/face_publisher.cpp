@@ -2,6 +2,7 @@
 
 #include "frontalis/error.hpp"
 #include "frontalis/render/face_appearance.hpp"
+#include "ros/wrinkle_topic.hpp"
 
 #include <boost/make_shared.hpp>
 
@@ -53,14 +54,19 @@ FacePublisher::FacePublisher(ros::NodeHandle private_handle)
       muscles_(private_handle.advertise<visualization_msgs::MarkerArray>("muscles", 1)),
       eyes_(private_handle.advertise<visualization_msgs::MarkerArray>("eyes", 1, true)),
       caption_(private_handle.advertise<visualization_msgs::Marker>("caption", 1, true)),
-      handle_(private_handle)
+      handle_(private_handle),
+      wrinkles_(std::make_unique<WrinkleTopic>(private_handle))
 {
 }
 
+FacePublisher::~FacePublisher() = default;
+
 void FacePublisher::start(std::shared_ptr<const Model> model, const std::string& face_frame,
-                          const std::string& parent_frame, const std::string& backend)
+                          const std::string& parent_frame, const std::string& backend,
+                          const std::vector<double>& wrinkles_in)
 {
   model_ = std::move(model);
+  wrinkles_->start(model_, wrinkles_in);
   face_frame_ = face_frame;
   backend_ = backend;
   const SkinState rest = rest_in_face(*model_);
@@ -192,6 +198,10 @@ bool FacePublisher::publish(const Frame& frame, const ros::Time& stamp, bool pau
   // A frame that was made before the topic had subscribers has no field.
   if (frame.field.size() == skin.vertices.size())
     field_.publish(face_frame_, stamp, [&](auto& cloud) { to_point_cloud(skin, frame.field, {}, cloud); });
+  std_msgs::Header header;
+  header.frame_id = face_frame_;
+  header.stamp = stamp;
+  wrinkles_->offer(skin, header);
   geometry_msgs::PoseArray poses;
   to_poses(skin, landmark_vertices_, poses);
   landmarks_.publish(face_frame_, stamp, [&](auto& message) { message.poses = poses.poses; });

@@ -62,6 +62,8 @@ FaceParameters read_parameters(const ros::NodeHandle& private_handle)
 {
   ParameterReader reader(private_handle);
   FaceParameters out;
+  constexpr const char* four_numbers =
+      "[LEFT, UP, LEFT, UP]: numbers [m], the first corner to the right of the second and below it";
   out.bake.scene = reader.text("scene", "");
   out.model = reader.text("model", "");
   if (out.bake.scene.empty() == out.model.empty())
@@ -87,6 +89,9 @@ FaceParameters read_parameters(const ros::NodeHandle& private_handle)
   out.skin_field = reader.named("skin_field", "strain", &skin_field_from_name);
   out.skin_colour = reader.named("skin_colour", "skin", &skin_colour_from_name);
   out.colour_range = reader.number("colour_range", 0.0, "a number", 0.0, "0 (that of the field) or more");
+  const auto& part = out.wrinkles_in = reader.value("wrinkles_in", std::vector<double>(), four_numbers);
+  if (!part.empty() && !(part.size() == 4 && part[0] < part[2] && part[1] < part[3]))
+    reader.add_fault("wrinkles_in", fmt::format("found {}; allowed is {}", fmt::join(part, ", "), four_numbers));
   out.face_id = reader.text("face_id", "");
   out.parent_frame = reader.text("parent_frame", "map");
   out.inputs.demo = reader.value("demo", false, "true or false");

@@ -162,8 +162,8 @@ void add_restrictions(const Scene& scene, Content& content)
 void add_output(const Scene& scene, Content& content)
 {
   content.line("skin", scene.skin.surface, scene.skin.crop, scene.skin.extrapolation);
-  if (const std::optional<SceneFilm>& film = scene.film)
-    content.line("film", film->material, film->thickness, film->base, film->stretch, film->crop);
+  for (const SceneFilm& film : scene.films)
+    content.line("film", film.material, film.thickness, film.base, film.stretch, film.crop);
   for (const SceneLandmark& landmark : scene.landmarks)
   {
     content.line("landmark", landmark.name, landmark.position);

@@ -38,15 +38,18 @@ void read_skin(const Node& node, Scene& scene, const SceneNames& names)
   skin.surface = mapping.required("surface", "the name of the surface to publish").reference(names.surfaces);
   skin.crop = read_region(mapping.optional("crop"));
   if (const Node lines = mapping.optional("fine_lines"); lines.given())
-  {
-    Mapping film(lines);
-    scene.film.emplace();
-    scene.film->material = film.required("material", "the material of the film").reference(names.materials);
-    scene.film->thickness = film.required("thickness", "the film's thickness").number(Dimension::length, positive, 0);
-    scene.film->base = film.required("base", "the material below the film").reference(names.materials);
-    scene.film->stretch = film.optional("stretch").number(Dimension::number, proportion, 0);
-    scene.film->crop = read_region(film.optional("crop"));
-  }
+    for (const Node& entry : lines.is_list() ? lines.entries() : std::vector<Node>{ lines })
+    {
+      Mapping mapping_of_film(entry);
+      SceneFilm film;
+      film.material = mapping_of_film.required("material", "the material of the film").reference(names.materials);
+      film.thickness =
+          mapping_of_film.required("thickness", "the film's thickness").number(Dimension::length, positive, 0);
+      film.base = mapping_of_film.required("base", "the material below the film").reference(names.materials);
+      film.stretch = mapping_of_film.optional("stretch").number(Dimension::number, proportion, 0);
+      film.crop = read_region(mapping_of_film.optional("crop"));
+      scene.films.push_back(std::move(film));
+    }
   skin.extrapolation = mapping.optional("extrapolation").number(Dimension::length, positive, skin.extrapolation);
 }
 

@@ -29,11 +29,12 @@ void leave_out_unused(Scene& scene)
   const auto unused = [&](const SceneMaterial& material)
   {
     const auto has = [&](const auto& item) { return item.material == material.name; };
-    const std::optional<SceneFilm>& film = scene.film;
+    const auto in_film = [&](const SceneFilm& film)
+    { return film.material == material.name || film.base == material.name; };
     const std::vector<std::string>& scaled = scene.accuracy.mass_scaling.materials;
     return material.of_library && std::none_of(scene.volumes.begin(), scene.volumes.end(), has) &&
            std::none_of(scene.layers.begin(), scene.layers.end(), has) &&
-           !(film && (film->material == material.name || film->base == material.name)) &&
+           std::none_of(scene.films.begin(), scene.films.end(), in_film) &&
            std::find(scaled.begin(), scaled.end(), material.name) == scaled.end();
   };
   auto& all = scene.materials;

@@ -26,8 +26,8 @@ Scene ball_with_film()
   scene.skin.surface = "skin";
   scene.materials.push_back(material("film"));
   scene.materials.back().parameters["young"] = 100 * scene.materials.front().parameters["young"];
-  scene.film = SceneFilm{ "film", 0.1e-3, scene.materials.front().name, 0.02, Region() };
-  scene.film->crop.lower[2] = 0;
+  scene.films = { SceneFilm{ "film", 0.1e-3, scene.materials.front().name, 0.02, Region() } };
+  scene.films[0].crop.lower[2] = 0;
   return scene;
 }
 
@@ -48,18 +48,18 @@ TEST(BakeFilm, halves_edges_where_lines_are_wanted_and_keeps_the_surface_smooth)
 {
   const Model model = bake(ball_with_film());
   const SkinFilm& film = model.film;
-  EXPECT_NEAR(film.modulus / film.base_modulus, 100, 1e-6);
-  EXPECT_EQ(film.stretch, 0.02);
+  EXPECT_NEAR(film.laws[0].modulus / film.laws[0].base_modulus, 100, 1e-6);
+  EXPECT_EQ(film.laws[0].stretch, 0.02);
   const Model plain = bake(
       []
       {
         Scene scene = ball_with_film();
-        scene.film.reset();
+        scene.films.clear();
         return scene;
       }());
   EXPECT_EQ(film.carried, plain.skin.triangles);
   EXPECT_EQ(model.skin.vertices.size(), plain.skin.vertices.size() + film.parents.size());
-  EXPECT_EQ(plain.film.thickness, 0);
+  EXPECT_TRUE(plain.film.laws.empty());
 
   const auto place = [&](std::int32_t v) { return to_vector(model.to_scene(model.skin.vertices[v])); };
   double sum = 0, longest = 0, longest_below = 0, count = 0;
@@ -75,13 +75,45 @@ TEST(BakeFilm, halves_edges_where_lines_are_wanted_and_keeps_the_surface_smooth)
       longest = std::max(longest, (b - a).norm());
       ++count;
     }
-  EXPECT_LE(sum / count, film_wavelength(film) / 6);
-  EXPECT_LE(longest, film_wavelength(film) / 4.5);
-  EXPECT_GT(longest_below, film_wavelength(film) / 3);
+  EXPECT_LE(sum / count, film_wavelength(film.laws[0]) / 6);
+  EXPECT_LE(longest, film_wavelength(film.laws[0]) / 4.5);
+  EXPECT_GT(longest_below, film_wavelength(film.laws[0]) / 3);
   double off = 0;
   for (std::size_t v = 0; v < model.skin.vertices.size(); ++v)
     off = std::max(off, std::abs(place(static_cast<std::int32_t>(v)).norm() - radius));
   EXPECT_LT(off, 0.03e-3);
+}
+
+TEST(BakeFilm, of_a_later_entry_replaces_earlier_ones)
+{
+  Scene scene = ball_with_film();
+  SceneFilm thin = scene.films[0];
+  thin.thickness /= 2;
+  thin.stretch = 0;
+  thin.crop.lower[0] = 2e-3;
+  scene.films.push_back(thin);
+  const Model model = bake(scene);
+  const SkinFilm& film = model.film;
+  ASSERT_EQ(film.laws.size(), 2U);
+  EXPECT_NEAR(film_wavelength(film.laws[1]), 0.5 * film_wavelength(film.laws[0]), 1e-12);
+  EXPECT_EQ(film.laws[1].stretch, 0);
+  ASSERT_EQ(film.law.size(), model.skin.vertices.size());
+  const auto place = [&](std::int32_t v) { return to_vector(model.to_scene(model.skin.vertices[v])); };
+  for (std::size_t v = 0; v < film.law.size(); ++v)
+  {
+    const Vector3d at = place(static_cast<std::int32_t>(v));
+    if (std::abs(at[0] - 2e-3) < 1e-9 || std::abs(at[2]) < 1e-9)
+      continue;
+    EXPECT_EQ(film.law[v], at[2] < 0 ? -1 : at[0] < 2e-3 ? 0 : 1) << at.transpose();
+  }
+  double longest[2] = { 0, 0 };
+  for (const auto& t : model.skin.triangles)
+    for (std::size_t c = 0; c < 3; ++c)
+      if (const std::int32_t law = film.law[t[c]]; law >= 0 && film.law[t[(c + 1) % 3]] == law)
+        longest[law] = std::max(longest[law], (place(t[c]) - place(t[(c + 1) % 3])).norm());
+  EXPECT_LE(longest[1], film_wavelength(film.laws[1]) / 4.5);
+  EXPECT_LE(longest[0], film_wavelength(film.laws[0]) / 4.5);
+  EXPECT_GT(longest[0], film_wavelength(film.laws[1]) / 4.5);
 }
 
 TEST(BakeFilm, is_the_same_in_the_model_file)
@@ -93,11 +125,12 @@ TEST(BakeFilm, is_the_same_in_the_model_file)
   write_model(model, file);
   const SkinFilm film = read_model(file).film;
   std::filesystem::remove(file);
-  EXPECT_EQ(film.thickness, model.film.thickness);
-  EXPECT_EQ(film.modulus, model.film.modulus);
-  EXPECT_EQ(film.poisson, model.film.poisson);
-  EXPECT_EQ(film.base_modulus, model.film.base_modulus);
-  EXPECT_EQ(film.stretch, model.film.stretch);
+  EXPECT_EQ(film.laws[0].thickness, model.film.laws[0].thickness);
+  EXPECT_EQ(film.laws[0].modulus, model.film.laws[0].modulus);
+  EXPECT_EQ(film.laws[0].poisson, model.film.laws[0].poisson);
+  EXPECT_EQ(film.laws[0].base_modulus, model.film.laws[0].base_modulus);
+  EXPECT_EQ(film.laws[0].stretch, model.film.laws[0].stretch);
+  EXPECT_EQ(film.law, model.film.law);
   EXPECT_EQ(film.carried, model.film.carried);
   EXPECT_EQ(film.parents, model.film.parents);
   EXPECT_EQ(film.crease, model.film.crease);
@@ -106,13 +139,13 @@ TEST(BakeFilm, is_the_same_in_the_model_file)
 TEST(BakeFilm, must_be_stiff_and_have_lines_that_can_be_resolved_on_the_skin)
 {
   Scene soft = ball_with_film();
-  soft.film->material = soft.film->base;
+  soft.films[0].material = soft.films[0].base;
   EXPECT_NE(error_of(soft).find("at least 10 times as stiff"), std::string::npos) << error_of(soft);
   Scene thin = ball_with_film();
-  thin.film->thickness = 1e-6;
+  thin.films[0].thickness = 1e-6;
   EXPECT_NE(error_of(thin).find("million vertices"), std::string::npos) << error_of(thin);
   Scene beside = ball_with_film();
-  beside.film->crop.lower[2] = 2 * radius;
+  beside.films[0].crop.lower[2] = 2 * radius;
   EXPECT_NE(error_of(beside).find("skin: fine_lines: crop: no triangle"), std::string::npos) << error_of(beside);
 }
 

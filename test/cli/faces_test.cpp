@@ -97,6 +97,16 @@ TEST(Faces, the_generated_head_raises_its_brows_frowns_smiles_and_blinks)
   const auto long_ones = std::count_if(lines.at("furrows").begin(), lines.at("furrows").end(),
                                        [](const nlohmann::json& line) { return line.at("length_m") > 30e-3; });
   EXPECT_GE(long_ones, 3) << lines;
+  // those of a frown run up between the brows, 6 to 12 mm apart
+  const ProgramResult frowning =
+      run_program({ "run", head, "--expression", "frown", "--ramp", "0.2", "--seconds", "0.4", "--frame-rate", "10",
+                    "--frames", folder / "frames", "--wrinkles-in=-24,7,24,22" });
+  ASSERT_EQ(frowning.code, 0) << frowning.errors;
+  const nlohmann::json upright = json_from(text_of(folder / "frames/run.json")).at("wrinkles");
+  EXPECT_GT(std::abs(upright.at("direction").at(2).get<double>()), 0.9) << upright;
+  EXPECT_GE(upright.at("spacing_m"), 6e-3) << upright;
+  EXPECT_LE(upright.at("spacing_m"), 12e-3) << upright;
+  EXPECT_GE(upright.at("furrows").size(), 2u) << upright;
   // the left half of the expression moves the left side like the whole expression
   EXPECT_NEAR(up(half.mapped().at("brow_mid_left")), up(raised.at("brow_mid_left")), 1);
   EXPECT_LT(std::abs(up(half.mapped().at("brow_mid_right"))), 1);

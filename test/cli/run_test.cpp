@@ -89,9 +89,8 @@ protected:
 TEST_F(RunModel, writes_the_height_of_fine_lines)
 {
   Model film = bar_model();
-  film.film.thickness = 1e-4;
-  film.film.modulus = 1e6;
-  film.film.base_modulus = 1e4;
+  film.film.laws = { FilmLaw{ 1e-4, 1e6, 0.49, 1e4, 0 } };
+  film.film.law.assign(film.skin.vertices.size(), 0);
   film.film.carried = film.skin.triangles;
   write_model(film, model);
   const ProgramResult result =

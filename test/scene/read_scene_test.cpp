@@ -350,11 +350,10 @@ TEST(EveryKey, output_time_and_accuracy)
   EXPECT_EQ(scene.skin.surface, "box");
   expect_vector(scene.skin.crop.lower, { -infinity, -infinity, 0 });
   EXPECT_NEAR(scene.skin.extrapolation, 0.006, 1e-15);
-  ASSERT_TRUE(scene.film);
-  EXPECT_EQ(scene.film->material + " on " + scene.film->base, "dermis on fat");
-  EXPECT_NEAR(scene.film->thickness, 1e-4, 1e-15);
-  EXPECT_NEAR(scene.film->stretch, 0.05, 1e-15);
-  expect_vector(scene.film->crop.upper, { infinity, 0.01, infinity });
+  ASSERT_EQ(scene.films.size(), 2U);
+  EXPECT_EQ(scene.films[0].material + " on " + scene.films[0].base, "dermis on fat");
+  expect_vector({ scene.films[0].thickness, scene.films[1].thickness, scene.films[0].stretch }, { 1e-4, 2e-4, 0.05 });
+  expect_vector(scene.films[0].crop.upper, { infinity, 0.01, infinity });
   ASSERT_EQ(scene.landmarks.size(), 2U);
   EXPECT_EQ(scene.landmarks[0].name, "brow_left");
   expect_vector(scene.landmarks[0].position, { 0.01, 0.02, 0.03 });

@@ -97,14 +97,15 @@ TEST(Film, FoldsAtTheWavelengthAndTheAmplitudeOfTheory)
     for (const double angle : { 0.0, pi / 6 })
     {
       const Model model = film_model(ratio);
-      FilmEquilibrium film(model);
+      FilmEquilibrium film(model, 0);
       constexpr double excess[] = { 0.1, 0.4, 1.6 };
       double found[3], length[3];
       std::vector<float> height;
       for (int i = 0; i < 3; ++i)
       {
-        height = heights(film, compressed(model, (1 + excess[i]) * film_critical_strain(model.film), angle), 6, height);
-        length[i] = wavelength(model, height, angle) / film_wavelength(model.film);
+        height = heights(film, compressed(model, (1 + excess[i]) * film_critical_strain(model.film.laws[0]), angle), 6,
+                         height);
+        length[i] = wavelength(model, height, angle) / film_wavelength(model.film.laws[0]);
         found[i] = amplitude(model, height) / thickness;
         EXPECT_NEAR(length[i], 1, 0.1) << ratio << " " << angle << " " << excess[i];
         EXPECT_NEAR(found[i] / std::sqrt(excess[i]), 1, 0.15) << ratio << " " << angle << " " << excess[i];
@@ -124,8 +125,8 @@ TEST(Film, FoldsAtTheWavelengthAndTheAmplitudeOfTheory)
 TEST(Film, FoldsFromTheCriticalStrainOfTheoryOnAndIsFlatBelowIt)
 {
   const Model model = film_model(100);
-  FilmEquilibrium film(model);
-  const double critical = film_critical_strain(model.film);
+  FilmEquilibrium film(model, 0);
+  const double critical = film_critical_strain(model.film.laws[0]);
   EXPECT_EQ(amplitude(model, heights(film, compressed(model, 0.85 * critical), 1)), 0);
   EXPECT_GT(amplitude(model, heights(film, compressed(model, 1.15 * critical), 20)), 0.2 * thickness);
   // Lines that are already deep become flat again.
@@ -138,10 +139,11 @@ TEST(Film, FoldsFromTheCriticalStrainOfTheoryOnAndIsFlatBelowIt)
 TEST(Film, AStretchOfTheFilmAtRestDelaysLines)
 {
   Model model = film_model(100);
-  model.film.stretch = 0.1;
+  model.film.laws[0].stretch = 0.1;
   // The film is also stretched along the lines, which delays them by Poisson's ratio times that stretch.
-  const double needed = film_critical_strain(model.film) + (1 + model.film.poisson) * model.film.stretch;
-  FilmEquilibrium film(model);
+  const double needed =
+      film_critical_strain(model.film.laws[0]) + (1 + model.film.laws[0].poisson) * model.film.laws[0].stretch;
+  FilmEquilibrium film(model, 0);
   EXPECT_EQ(amplitude(model, heights(film, compressed(model, 0.9 * needed), 1)), 0);
   EXPECT_GT(amplitude(model, heights(film, compressed(model, 1.1 * needed))), 0.2 * thickness);
 }
@@ -150,27 +152,30 @@ TEST(Film, AStretchOfTheFilmAtRestDelaysLines)
 TEST(Film, AThirdOfACreaseShowsAtRest)
 {
   Model model = film_model(100);
-  const double k = 2 * pi / film_wavelength(model.film), deep = thickness;
+  const double k = 2 * pi / film_wavelength(model.film.laws[0]), deep = thickness;
   for (const auto& v : model.skin.vertices)
     model.film.crease.push_back(static_cast<float>(deep * std::cos(k * v[0])));
   const Vertices rest = compressed(model, 0);
-  FilmEquilibrium creased(model);
+  FilmEquilibrium creased(model, 0);
   const std::vector<float> height = heights(creased, rest);
   // with six edges per wave, the discrete curvature of a wave is a tenth smaller than the true one
   EXPECT_NEAR(amplitude(model, height), deep / 3, 0.05 * deep);
-  EXPECT_NEAR(wavelength(model, height, 0), film_wavelength(model.film), 0.05 * film_wavelength(model.film));
+  EXPECT_NEAR(wavelength(model, height, 0), film_wavelength(model.film.laws[0]),
+              0.05 * film_wavelength(model.film.laws[0]));
   // Tension draws creases flat. Compression by the critical strain would be a force of - 3 in these units.
-  model.film.stretch = 0.5 * film_critical_strain(model.film);
-  FilmEquilibrium stretched(model);
-  EXPECT_NEAR(amplitude(model, heights(stretched, rest)), deep / (3 + 1.5 * (1 + model.film.poisson)), 0.02 * deep);
+  model.film.laws[0].stretch = 0.5 * film_critical_strain(model.film.laws[0]);
+  FilmEquilibrium stretched(model, 0);
+  EXPECT_NEAR(amplitude(model, heights(stretched, rest)), deep / (3 + 1.5 * (1 + model.film.laws[0].poisson)),
+              0.02 * deep);
 }
 
 TEST(Film, LinesAreWhereTheSkinIsCompressed)
 {
   const Model model = film_model(100);
-  FilmEquilibrium film(model);
+  FilmEquilibrium film(model, 0);
   const auto left = [](double along, double w) { return std::min(along, 0.5 * w); };
-  const std::vector<float> height = heights(film, compressed(model, 3 * film_critical_strain(model.film), 0, left));
+  const std::vector<float> height =
+      heights(film, compressed(model, 3 * film_critical_strain(model.film.laws[0]), 0, left));
   double highest_left = 0, highest_right = 0;
   for (std::size_t v = 0; v < height.size(); ++v)
   {
@@ -182,19 +187,59 @@ TEST(Film, LinesAreWhereTheSkinIsCompressed)
   EXPECT_EQ(highest_right, 0);
 }
 
+// The right half of the skin has a thicker film. A stretch keeps the film of one half
+// flat without an effect on the other.
+TEST(Film, EachRegionHasLinesOfItsOwn)
+{
+  Model model = film_model(1000);
+  FilmLaw thick = model.film.laws[0];
+  thick.thickness *= 1.5;
+  model.film.laws.push_back(thick);
+  for (std::size_t v = 0; v < model.film.law.size(); ++v)
+    model.film.law[v] = model.skin.vertices[v][0] < 0.5 * width(model) ? 0 : 1;
+  const Vertices vertices = compressed(model, 2.5 * film_critical_strain(thick), pi / 2);
+  const auto half_height = [&](const std::vector<float>& height, bool right)
+  {
+    std::vector<float> half = height;
+    for (std::size_t v = 0; v < half.size(); ++v)
+      if ((model.skin.vertices[v][0] < 0.5 * width(model)) == right)
+        half[v] = 0;
+    return half;
+  };
+  const auto lines = [&]
+  {
+    SkinState skin;
+    const auto fine_lines = FineLines::make(std::make_shared<Model>(model), false);
+    for (int frame = 0; frame < 6; ++frame)
+    {
+      skin.vertices = vertices;
+      fine_lines->add_to(skin, true);
+    }
+    return skin.line_height;
+  };
+  const std::vector<float> height = lines();
+  const double left = amplitude(model, half_height(height, false)), right = amplitude(model, half_height(height, true));
+  EXPECT_GT(left, 0.5 * thickness);
+  EXPECT_NEAR(right / left, 1.5, 0.15);
+  model.film.laws[1].stretch = 0.5;
+  const std::vector<float> stretched = lines();
+  EXPECT_EQ(half_height(stretched, false), half_height(height, false));
+  EXPECT_EQ(amplitude(model, half_height(stretched, true)), 0);
+}
+
 TEST(Film, IsTheSameInEveryRun)
 {
   const Model model = film_model(100);
-  FilmEquilibrium one(model), other(model);
-  const Vertices vertices = compressed(model, 2 * film_critical_strain(model.film), 1);
+  FilmEquilibrium one(model, 0), other(model, 0);
+  const Vertices vertices = compressed(model, 2 * film_critical_strain(model.film.laws[0]), 1);
   EXPECT_EQ(heights(one, vertices, 2), heights(other, vertices, 2));
 }
 
 TEST(Film, RecoversFromHeightsThatAreNoNumbers)
 {
   const Model model = film_model(100);
-  FilmEquilibrium film(model);
-  const Vertices vertices = compressed(model, 2 * film_critical_strain(model.film));
+  FilmEquilibrium film(model, 0);
+  const Vertices vertices = compressed(model, 2 * film_critical_strain(model.film.laws[0]));
   for (const float bad : { std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity() })
     EXPECT_NEAR(amplitude(model, heights(film, vertices, 6, std::vector<float>(vertices.size(), bad))),
                 amplitude(model, heights(film, vertices)), 1e-3 * thickness);
@@ -203,7 +248,7 @@ TEST(Film, RecoversFromHeightsThatAreNoNumbers)
 TEST(FineLines, MoveVerticesAlongTheNormalsAndTiltThese)
 {
   const auto model = std::make_shared<Model>(film_model(100));
-  const Vertices vertices = compressed(*model, 2 * film_critical_strain(model->film));
+  const Vertices vertices = compressed(*model, 2 * film_critical_strain(model->film.laws[0]));
   const auto frame = [&](FineLines& lines, bool wait)
   {
     SkinState skin;
@@ -233,7 +278,7 @@ TEST(FineLines, MoveVerticesAlongTheNormalsAndTiltThese)
   }
   EXPECT_EQ(frame(*apart, true).line_height, skin.line_height);
 
-  model->film.thickness = 0;
+  model->film = SkinFilm();
   EXPECT_EQ(FineLines::make(model, false), nullptr);
 }
 

@@ -79,7 +79,7 @@ TEST_P(Waves, have_their_depth_spacing_and_direction)
   WrinkleSettings settings;
   settings.lower = { -1, -25e-3, 18e-3 };
   settings.upper = { 1, 25e-3, 62e-3 };
-  const Wrinkles found = measure_wrinkles(rest.skin, now.skin, now.triangles, settings);
+  const Wrinkles found = WrinkleMeter(rest.skin, now.triangles, settings).measure(now.skin);
   EXPECT_NEAR(found.spacing, spacing, 0.03 * spacing);
   EXPECT_NEAR(found.depth, depth, 0.05 * depth);
   EXPECT_NEAR(std::abs(found.direction[1] * c + found.direction[2] * s), 1, 1e-3);
@@ -103,7 +103,7 @@ TEST(Wrinkles, count_one_furrow_and_its_length)
     return -2e-3 * along * std::exp(-std::pow((z - 40e-3) / 2e-3, 2));
   };
   const Sheet rest = sheet(1e-3, [](double, double) { return 0; }), now = sheet(1e-3, furrow);
-  const Wrinkles found = measure_wrinkles(rest.skin, now.skin, now.triangles);
+  const Wrinkles found = WrinkleMeter(rest.skin, now.triangles).measure(now.skin);
   ASSERT_EQ(found.furrows.size(), 1u);
   EXPECT_NEAR(found.furrows[0].length, 40e-3, 4e-3);
   EXPECT_NEAR(found.furrows[0].middle[2], 40e-3, 0.5e-3);
@@ -116,7 +116,7 @@ TEST(Wrinkles, leave_out_what_is_there_at_rest)
 {
   const auto wave = [](double, double z) { return 1e-3 * std::cos(2 * pi * z / 10e-3); };
   const Sheet skin = sheet(1.5e-3, wave);
-  const Wrinkles found = measure_wrinkles(skin.skin, skin.skin, skin.triangles);
+  const Wrinkles found = WrinkleMeter(skin.skin, skin.triangles).measure(skin.skin);
   EXPECT_TRUE(found.furrows.empty());
   EXPECT_EQ(found.count, 0);
   EXPECT_EQ(found.depth, 0);
@@ -126,7 +126,11 @@ TEST(Wrinkles, are_measured_until_progress_throws)
 {
   const Sheet flat = sheet(2e-3, [](double, double) { return 0; });
   std::vector<double> done;
-  measure_wrinkles(flat.skin, flat.skin, flat.triangles, {}, [&](double now) { done.push_back(now); });
+  const auto note = [&](double now) { done.push_back(now); };
+  const WrinkleMeter meter(flat.skin, flat.triangles, {}, note);
+  EXPECT_GE(done.size(), flat.skin.vertices.size() / 500);
+  done.clear();
+  meter.measure(flat.skin, note);
   EXPECT_GE(done.size(), flat.skin.vertices.size() / 500);
   EXPECT_TRUE(std::is_sorted(done.begin(), done.end()));
   EXPECT_GE(done.front(), 0);
@@ -137,7 +141,7 @@ TEST(Wrinkles, are_measured_until_progress_throws)
     if (++calls == 3)
       throw std::runtime_error("stop");
   };
-  EXPECT_THROW(measure_wrinkles(flat.skin, flat.skin, flat.triangles, {}, stop), std::runtime_error);
+  EXPECT_THROW(meter.measure(flat.skin, stop), std::runtime_error);
   EXPECT_EQ(calls, 3u);
 }
 

@@ -8,7 +8,7 @@ namespace frontalis
 {
 
 /// Version of the file layout; files of another version are refused.
-constexpr int model_file_version = 11;
+constexpr int model_file_version = 12;
 
 /// Writes the model to a temporary file beside `path`, which is then renamed, so that no partial file remains at
 /// `path`. Equal models give equal bytes. Throws Error.

@@ -25,20 +25,24 @@
 namespace frontalis
 {
 
+class WrinkleTopic;
+
 /// Publishes the topics ~skin, ~skin_points, ~skin_field, ~skin_topology, ~landmarks, ~muscles, ~eyes, ~bodies,
-/// ~caption, ~wrench/... and ~state, and the transforms. A message is built only while its topic has subscribers, and
-/// its memory is reused once no subscriber holds it. Only one thread at a time may call these functions, except for
-/// wanted_field(), shows_muscles() and shows_bone_forces().
+/// ~caption, ~wrench/..., ~wrinkles and ~state, and the transforms. A message is built only while its topic has
+/// subscribers, and its memory is reused once no subscriber holds it. Only one thread at a time may call these
+/// functions, except for wanted_field(), shows_muscles() and shows_bone_forces().
 class FacePublisher
 {
 public:
   /// Advertises the topics; nothing is published yet.
   explicit FacePublisher(ros::NodeHandle private_handle);
+  ~FacePublisher();
 
   /// Sets the model and publishes its topology, its bodies and its eyeballs (latched). If `parent_frame` is not empty,
-  /// it also publishes an identity transform from that frame to the face frame.
+  /// it also publishes an identity transform from that frame to the face frame. `wrinkles_in`: the part of the skin
+  /// whose wrinkles are measured (WrinkleTopic::start()).
   void start(std::shared_ptr<const Model> model, const std::string& face_frame, const std::string& parent_frame,
-             const std::string& backend);
+             const std::string& backend, const std::vector<double>& wrinkles_in);
 
   /// Chooses what the colours of the skin show, which field is published, and the value that gets the last colour of
   /// the scale (0: a value for each field that suits faces).
@@ -105,6 +109,7 @@ private:
   visualization_msgs::MarkerArray body_markers_, eye_markers_;  ///< kept until they are published again
   std::optional<ros::WallTime> bodies_due_{};  ///< when bodies are published again; 0: to be decided at the next frame
   ros::NodeHandle handle_;
+  std::unique_ptr<WrinkleTopic> wrinkles_;
   tf2_ros::TransformBroadcaster transforms_;
   tf2_ros::StaticTransformBroadcaster static_transforms_;
 

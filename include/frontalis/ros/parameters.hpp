@@ -51,6 +51,7 @@ struct FaceParameters
   SkinField skin_field = SkinField::strain;  ///< the field that ~skin_field publishes
   SkinColour skin_colour = SkinColour::skin;
   double colour_range = 0;                ///< value with the last colour; 0: the default of skin_colour
+  std::vector<double> wrinkles_in;        ///< LEFT, UP, LEFT, UP [m]: part of the skin of ~wrinkles; empty: all
   std::string face_id;                    ///< the face frame is face_<id>; empty: the model's frame
   std::string parent_frame = "map";       ///< parent of the face frame; empty: no static transform
   double real_time_factor_warning = 0.5;  ///< diagnostics warn below this factor, at pace real_time

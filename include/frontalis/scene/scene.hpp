@@ -14,7 +14,7 @@
 namespace frontalis
 {
 
-/// Stiff film on the skin, which wrinkles in lines that are finer than voxels (SkinFilm).
+/// Stiff film on a part of the skin, which wrinkles in lines that are finer than voxels (FilmLaw).
 struct SceneFilm
 {
   std::string material;
@@ -137,7 +137,7 @@ struct Scene
   std::map<std::string, FacePose> expressions;
   std::vector<DemoPhase> demo;
   std::string content;  ///< canonical text of all that the bake depends on, hashes of files included: key of caches
-  std::optional<SceneFilm> film{};  ///< of the skin
+  std::vector<SceneFilm> films{};  ///< of parts of the skin; a later one replaces earlier ones where it is
 };
 
 }  // namespace frontalis

@@ -49,9 +49,24 @@ std::vector<double> fold_heights(const SkinState& skin, const SkinTriangles& tri
 
 /// Measures the furrows that a skin has now and did not have at rest, from present heights less those at rest. The
 /// direction of the furrows is that in which heights change least. Sections across this direction are searched for
-/// furrows, which are joined to lines. Sections follow the skin without folds, so that a fold may overhang. `progress`
-/// is called now and then with the completed fraction; an exception that it throws ends the measurement.
-Wrinkles measure_wrinkles(const SkinState& rest, const SkinState& now, const SkinTriangles& triangles,
-                          const WrinkleSettings& settings = {}, const std::function<void(double)>& progress = {});
+/// furrows, which are joined to lines. Sections follow the skin without folds, so that a fold may overhang.
+class WrinkleMeter
+{
+public:
+  /// Called now and then with the completed fraction; an exception that it throws ends the measurement.
+  using Progress = std::function<void(double)>;
+
+  /// Finds the heights of the skin at rest, once for all measurements.
+  WrinkleMeter(SkinState rest, SkinTriangles triangles, const WrinkleSettings& settings = {},
+               const Progress& progress = {});
+
+  Wrinkles measure(const SkinState& now, const Progress& progress = {}) const;
+
+private:
+  SkinState rest_;
+  SkinTriangles triangles_, near_;  ///< all, and those near the box of the settings
+  WrinkleSettings settings_;
+  std::vector<double> heights_;  ///< at rest, of the corners of near_ [m]
+};
 
 }  // namespace frontalis

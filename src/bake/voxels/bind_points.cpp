@@ -165,40 +165,74 @@ double plane_strain_modulus(const Material& material, double* poisson)
   return young / (1 - *poisson * *poisson);
 }
 
-// Gives the model the film of the scene's skin, and halves the edges of `surface`, in scene coordinates, until they
-// resolve its lines.
-void add_film(const Scene& scene, const SceneFilm& film, TriangleMesh& surface, Model& model, BakeMonitor& monitor)
+FilmLaw film_law(const Scene& scene, const SceneFilm& film, const Model& model, const std::string& place)
+{
+  FilmLaw law;
+  double base_poisson = 0;
+  law.thickness = film.thickness;
+  law.stretch = film.stretch;
+  law.modulus =
+      plane_strain_modulus(model.materials[index_of(scene.materials, film.material, place, "material")], &law.poisson);
+  law.base_modulus =
+      plane_strain_modulus(model.materials[index_of(scene.materials, film.base, place, "material")], &base_poisson);
+  if (law.modulus < 10 * law.base_modulus)
+    throw failure(
+        "{}: film '{}' is {:.3g} times as stiff as its base '{}'; lines need a film at least 10 times as stiff", place,
+        film.material, law.modulus / law.base_modulus, film.base);
+  return law;
+}
+
+// Gives the model the films of the scene's skin, and halves the edges of `surface`, in scene coordinates, until they
+// resolve their lines.
+void add_film(const Scene& scene, TriangleMesh& surface, Model& model, BakeMonitor& monitor)
 {
   const std::string place = scene.file + ": skin: fine_lines";
   SkinFilm& out = model.film;
-  double base_poisson = 0;
-  out.thickness = film.thickness;
-  out.stretch = film.stretch;
-  out.modulus =
-      plane_strain_modulus(model.materials[index_of(scene.materials, film.material, place, "material")], &out.poisson);
-  out.base_modulus =
-      plane_strain_modulus(model.materials[index_of(scene.materials, film.base, place, "material")], &base_poisson);
-  const double wavelength = film_wavelength(out), edge = wavelength / edges_per_line;
-  if (out.modulus < 10 * out.base_modulus)
-    throw failure(
-        "{}: film '{}' is {:.3g} times as stiff as its base '{}'; lines need a film at least 10 times as stiff", place,
-        film.material, out.modulus / out.base_modulus, film.base);
-  const double area = surface_area(cut_mesh(surface, film.crop));
-  if (area <= 0 && !surface.triangles.empty())
-    throw failure("{}: crop: no triangle of the published skin lies in it; check its corners and the skin's crop",
-                  place);
-  const double vertices = vertices_per_edge_area * area / (edge * edge);
-  if (vertices > most_vertices)
-    throw failure(
-        "{}: lines are {} apart, and the skin needs about {:.1f} million vertices; at most {:.0f} million are "
-        "allowed: crop the film, or make it thicker",
-        place, length_text(wavelength, scene.unit), 1e-6 * vertices, 1e-6 * most_vertices);
+  std::vector<Box> crops;
+  std::vector<double> edges;
+  double vertices = 0;
+  for (const SceneFilm& film : scene.films)
+  {
+    const FilmLaw law = film_law(scene, film, model, place);
+    out.laws.push_back(law);
+    crops.push_back(to_box(film.crop));
+    edges.push_back(film_wavelength(law) / edges_per_line);
+    const double area = surface_area(cut_mesh(surface, film.crop));
+    if (area <= 0 && !surface.triangles.empty())
+      throw failure("{}: crop: no triangle of the published skin lies in it; check its corners and the skin's crop",
+                    place);
+    vertices += vertices_per_edge_area * area / (edges.back() * edges.back());
+    if (vertices > most_vertices)
+      throw failure(
+          "{}: lines are {} apart, and the skin needs about {:.1f} million vertices; at most {:.0f} million are "
+          "allowed: crop the film, or make it thicker",
+          place, length_text(film_wavelength(law), scene.unit), 1e-6 * vertices, 1e-6 * most_vertices);
+  }
   out.carried = surface.triangles;
-  const Box crop = to_box(film.crop);
-  out.parents = halve_edges(surface, [&](const Vector3d& at) { return edge + coarsening * crop.exteriorDistance(at); });
-  monitor.found("skin: fine lines {} apart from a compression of {:.3g} %, {} vertices",
-                length_text(wavelength, scene.unit),
-                100 * (film_critical_strain(out) + (1 + out.poisson) * out.stretch), surface.vertices.size());
+  // the last film at a place, or -1
+  const auto film_at = [&](const Vector3d& at)
+  {
+    auto f = static_cast<std::int32_t>(crops.size()) - 1;
+    while (f >= 0 && !crops[f].contains(at))
+      --f;
+    return f;
+  };
+  const auto longest = [&](const Vector3d& at)
+  {
+    const std::int32_t own = film_at(at);
+    double edge = own < 0 ? std::numeric_limits<double>::infinity() : edges[own];
+    for (std::size_t f = 0; f < crops.size(); ++f)
+      if (const double distance = crops[f].exteriorDistance(at); distance > 0)
+        edge = std::min(edge, edges[f] + coarsening * distance);
+    return edge;
+  };
+  out.parents = halve_edges(surface, longest);
+  for (std::size_t v = 0; v < surface.vertices.size(); ++v)
+    out.law.push_back(film_at(vertex(surface, static_cast<std::int32_t>(v))));
+  for (const FilmLaw& law : out.laws)
+    monitor.found("skin: fine lines {} apart from a compression of {:.3g} %",
+                  length_text(film_wavelength(law), scene.unit),
+                  100 * (film_critical_strain(law) + (1 + law.poisson) * law.stretch));
 }
 
 void bind_landmarks(const Scene& scene, const LocalFrame& frame, const PointBinder& binder, Model& model)
@@ -255,8 +289,8 @@ void bind_surfaces(const Scene& scene, const PreparedSurfaces& surfaces, const L
   {
     const PreparedSurface& skin = named_surface(surfaces, scene.skin.surface, scene.file + ": skin");
     TriangleMesh surface = cut_mesh(skin.mesh(), scene.skin.crop);
-    if (scene.film)
-      add_film(scene, *scene.film, surface, model, monitor);
+    if (!scene.films.empty())
+      add_film(scene, surface, model, monitor);
     BoundMesh bound = bind_mesh(surface, Region(), frame, binder, monitor);
     if (bound.mesh.triangles.empty())
       throw failure(

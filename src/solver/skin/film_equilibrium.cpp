@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <numeric>
 
 namespace frontalis
 {
@@ -14,20 +12,10 @@ namespace
 
 using Vector = physics::Vec3<double>;
 
-// Edges longer than this fraction of the wavelength do not resolve it.
-constexpr double longest_edge = 1.0 / 3;
 // Heights are computed where the film's largest compression is at least this fraction of the critical strain.
 constexpr double near_critical = 0.5;
 // The solution is found if an iteration lowers the energy by less than this fraction.
 constexpr double tolerance = 3e-4;
-constexpr double seed_height = 0.05;  // root mean square of the initial heights, divided by the film's thickness
-
-std::array<float, 6> product(const Vector& a, const Vector& b, double scale)
-{
-  const auto part = [&](double x) { return static_cast<float>(scale * x); };
-  return { { part(a.x * b.x), part(a.y * b.y), part(a.z * b.z), part(0.5 * (a.x * b.y + a.y * b.x)),
-             part(0.5 * (a.x * b.z + a.z * b.x)), part(0.5 * (a.y * b.z + a.z * b.y)) } };
-}
 
 template <class Tensor>
 float trace(const Tensor& a)
@@ -65,85 +53,6 @@ double first_minimum(double slope, double curvature, double third, double fourth
 }
 
 }  // namespace
-
-FilmEquilibrium::FilmEquilibrium(const Model& model)
-    : model_(model),
-      critical_(film_critical_strain(model.film)),
-      k_(2 * physics::pi / film_wavelength(model.film)),
-      cells_(model.skin.vertices,
-             std::max(2 * physics::pi / k_, *std::max_element(model.spacing.begin(), model.spacing.end()))),
-      order_(cells_.order()),
-      strain_(order_.size())
-{
-  for (Field* field : { &seed_, &curvature_, &local_, &crease_, &crease_force_ })
-    field->resize(order_.size());
-  make_operators();
-  make_seed();
-  if (!model.film.crease.empty())
-    make_creases();
-}
-
-// Sets the weights of linear finite elements for the operator div N grad with a tensor N: a triangle of area A
-// contributes -A grad_a . N . grad_b to the edge between its corners a and b. The area of a vertex is a third of the
-// area of its triangles.
-void FilmEquilibrium::make_operators()
-{
-  const std::size_t count = order_.size();
-  std::vector<std::int32_t> rank(count);
-  for (std::size_t v = 0; v < count; ++v)
-    rank[order_[v]] = static_cast<std::int32_t>(v);
-  std::vector<std::map<std::int32_t, std::pair<Tensor, int>>> edges(count);
-  std::vector<double> length(count, 0), area(count, 0);
-  for (const auto& triangle : model_.skin.triangles)
-  {
-    std::int32_t t[3];
-    Vector at[3];
-    for (std::size_t c = 0; c < 3; ++c)
-    {
-      t[c] = rank[triangle[c]];
-      at[c] = vector_of(model_.skin.vertices[triangle[c]]);
-    }
-    const Vector normal = cross(at[1] - at[0], at[2] - at[0]);
-    const double twice = std::sqrt(dot(normal, normal));
-    if (!(twice > 0))
-      continue;
-    for (int c = 0; c < 3; ++c)
-    {
-      const int a = (c + 1) % 3, b = (c + 2) % 3;
-      const Vector edge = at[b] - at[a];
-      const double size = std::sqrt(dot(edge, edge));
-      // A gradient times twice the area is an edge turned by a right angle.
-      const Tensor weight =
-          product((1 / twice) * cross(normal, at[c] - at[b]), (1 / twice) * cross(normal, at[a] - at[c]), -0.5 / twice);
-      for (const auto& [from, to] : { std::pair{ t[a], t[b] }, std::pair{ t[b], t[a] } })
-      {
-        auto& [sum, triangles] = edges[from][to];
-        for (std::size_t i = 0; i < sum.size(); ++i)
-          sum[i] += weight[i];
-        ++triangles;
-        length[from] = std::max(length[from], size);
-      }
-      area[t[c]] += twice / 6;
-    }
-  }
-  begin_.assign(1, 0);
-  for (std::size_t v = 0; v < count; ++v)
-  {
-    bool inside = !edges[v].empty();
-    for (const auto& [to, edge] : edges[v])
-    {
-      neighbour_.push_back(to);
-      edge_.push_back(edge.first);
-      laplace_.push_back(trace(edge.first));
-      inside = inside && edge.second == 2;
-    }
-    begin_.push_back(static_cast<std::int32_t>(neighbour_.size()));
-    area_.push_back(static_cast<float>(area[v] * k_ * k_));
-    resolved_.push_back(inside && length[v] * k_ < 2 * physics::pi * longest_edge);
-  }
-  membrane_.resize(laplace_.size());
-  cells_.set_areas(area_);
-}
 
 // Finds the Green-Lagrange strain as means over cells. The gradient of positions is constant in a triangle, so that the
 // integral of F^T F is a sum over edges of squared lengths times the tensors edge_.
@@ -186,7 +95,7 @@ void FilmEquilibrium::find_strain(const std::vector<std::array<float, 3>>& verti
 // a force of 3 per length.
 void FilmEquilibrium::find_active(Field& w)
 {
-  const auto poisson = static_cast<float>(model_.film.poisson), stretch = static_cast<float>(model_.film.stretch);
+  const auto poisson = static_cast<float>(law_.poisson), stretch = static_cast<float>(law_.stretch);
   active_.clear();
   std::vector<float> sums(strain_.size());
   for (std::size_t v = 0; v < strain_.size(); ++v)
@@ -272,40 +181,6 @@ void FilmEquilibrium::gradient(const Wave& u, const Field& relief, Field& out)
     out[v] += local_[v] - crease_force_[v];
 }
 
-// Makes the seed from which lines grow: the sum of plane waves in many directions of space, with the film's wavelength.
-// On a surface most of these waves have nearly that length. The seed depends on the position alone, so that lines
-// return to the same places.
-void FilmEquilibrium::make_seed()
-{
-  constexpr int waves = 64;
-  for (std::size_t v = 0; v < order_.size(); ++v)
-  {
-    const Vector at = vector_of(model_.skin.vertices[order_[v]]);
-    double sum = 0;
-    for (int i = 0; i < waves; ++i)
-    {
-      // The directions of the waves are spread evenly over a sphere.
-      const double z = 1 - (2 * i + 1.0) / waves, turn = physics::pi * (3 - std::sqrt(5.0)) * i,
-                   r = std::sqrt(1 - z * z);
-      sum += std::cos(k_ * (r * std::cos(turn) * at.x + r * std::sin(turn) * at.y + z * at.z) + i * i);
-    }
-    seed_[v] = static_cast<float>(seed_height * sum / std::sqrt(0.5 * waves));
-  }
-}
-
-// The energy - laplace w laplace w0 is minus the heights times forces that do not depend on them.
-void FilmEquilibrium::make_creases()
-{
-  for (std::size_t v = 0; v < order_.size(); ++v)
-    crease_[v] = model_.film.crease[order_[v]] / static_cast<float>(model_.film.thickness);
-  active_.resize(order_.size());
-  std::iota(active_.begin(), active_.end(), 0);
-  apply(crease_, curvature_, nullptr);
-  for (std::size_t v = 0; v < curvature_.size(); ++v)
-    curvature_[v] = area_[v] > 0 ? curvature_[v] / area_[v] : 0;
-  apply(curvature_, crease_force_, nullptr);
-}
-
 // Inverse of the diagonal of the quadratic energy's matrix.
 void FilmEquilibrium::precondition(Field& inverse) const
 {
@@ -326,8 +201,8 @@ void FilmEquilibrium::precondition(Field& inverse) const
 int FilmEquilibrium::solve(const std::vector<std::array<float, 3>>& vertices, std::vector<float>& height)
 {
   const std::size_t count = order_.size();
-  const auto thickness = static_cast<float>(model_.film.thickness);
-  height.resize(count, 0);
+  const auto thickness = static_cast<float>(law_.thickness);
+  height.resize(vertices.size(), 0);
   const Field zero(count, 0);
   Wave now{ zero, zero, zero }, step{ zero, zero, zero };
   for (std::size_t v = 0; v < count; ++v)

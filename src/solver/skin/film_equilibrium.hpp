@@ -10,8 +10,8 @@
 namespace frontalis
 {
 
-/// Finds the heights of a skin's film over the surface that voxels carry, by minimising an energy with one unknown per
-/// vertex.
+/// Finds the heights of a film in its region of a skin, over the surface that voxels carry, by minimising an energy
+/// with one unknown per vertex. At the border of the region, heights are 0.
 ///
 /// With k = 2 pi / wavelength, the energy per area of the film's height w over a surface of strain e is
 ///   3/8 D (k^2 w - laplace w)^2 + 1/2 t grad w . C e . grad w + 1/8 Ef t <|grad w|^2>^2.
@@ -30,12 +30,12 @@ namespace frontalis
 class FilmEquilibrium
 {
 public:
-  /// The model must have a film and must outlive this object.
-  explicit FilmEquilibrium(const Model& model);
+  /// `law`: index in the film's laws, whose region this is. The model must outlive this object.
+  FilmEquilibrium(const Model& model, std::size_t law);
 
   static constexpr int most_iterations = 40;
 
-  /// Improves `height` ([m], one per vertex of the skin; empty: flat) until the film is in equilibrium or
+  /// Improves `height` ([m], one per vertex of the skin; empty: flat) in the region until the film is in equilibrium or
   /// most_iterations have been made. Returns the number of iterations. `vertices`: those of the skin without lines [m].
   int solve(const std::vector<std::array<float, 3>>& vertices, std::vector<float>& height);
 
@@ -61,12 +61,15 @@ private:
   double quadratic(const Wave& u) const;
   void gradient(const Wave& u, const Field& relief, Field& out);
 
+  FilmEquilibrium(const Model& model, std::size_t law, std::vector<std::int32_t> region);
+
   const Model& model_;
+  const FilmLaw& law_;
   double critical_, k_;
   // The cells of means are at least one wavelength long, so that the mean of a squared wave has no ripple, and at least
   // one voxel edge long, so that strains that jump between voxels are smoothed.
   CellMeans cells_;
-  const std::vector<std::int32_t>& order_;       // index in the skin of each vertex in the order of this class
+  std::vector<std::int32_t> order_;              // index in the skin of each vertex in the order of this class
   std::vector<std::int32_t> begin_, neighbour_;  // neighbours of vertex v: from begin_[v] to begin_[v + 1]
   // per neighbour: weight of the edge in the operator div N grad, as a tensor to be contracted with N
   std::vector<Tensor> edge_;

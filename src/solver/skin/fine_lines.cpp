@@ -29,7 +29,7 @@ struct FineLines::Implementation
   using Vertices = std::vector<std::array<float, 3>>;
 
   std::shared_ptr<const Model> model;
-  FilmEquilibrium film;
+  std::vector<FilmEquilibrium> films;  // one per law
   std::atomic<double> seconds{ 0 };
   std::vector<float> found;  // heights; used by the separate thread, or by add_to() if there is none
 
@@ -44,15 +44,20 @@ struct FineLines::Implementation
   std::thread thread;
 
   explicit Implementation(std::shared_ptr<const Model> of)
-      : model(std::move(of)), film(*model), height(model->skin.vertices.size(), 0.0F)
+      : model(std::move(of)), height(model->skin.vertices.size(), 0.0F)
   {
+    films.reserve(model->film.laws.size());
+    for (std::size_t law = 0; law < model->film.laws.size(); ++law)
+      films.emplace_back(*model, law);
   }
 
   // Returns whether the heights are in equilibrium.
   bool find(const Vertices& vertices)
   {
     const double begin = thread_seconds();
-    const bool settled = film.solve(vertices, found) < FilmEquilibrium::most_iterations;
+    bool settled = true;
+    for (FilmEquilibrium& film : films)
+      settled = film.solve(vertices, found) < FilmEquilibrium::most_iterations && settled;
     seconds = thread_seconds() - begin;
     return settled;
   }
@@ -109,7 +114,7 @@ struct FineLines::Implementation
 
 std::unique_ptr<FineLines> FineLines::make(std::shared_ptr<const Model> model, bool own_thread)
 {
-  if (model->film.thickness <= 0)
+  if (model->film.laws.empty())
     return nullptr;
   return std::unique_ptr<FineLines>(new FineLines(std::move(model), own_thread));
 }

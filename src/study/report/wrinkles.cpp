@@ -15,7 +15,8 @@ namespace
 using Vector = Eigen::Vector3d;
 
 constexpr double piece_size =
-    0.2;  // edge of the pieces of skin that a fit uses, over the standard deviation of its window
+    0.2;                       // edge of the pieces of skin that a fit uses, over the standard deviation of its window
+constexpr double reach = 2.5;  // of the window: pieces farther away do not count, over its standard deviation
 constexpr std::size_t vertices_per_report = 256;  // vertices between two calls of `progress`
 
 Vector to_eigen(const std::array<float, 3>& p) { return { p[0], p[1], p[2] }; }
@@ -99,20 +100,28 @@ std::vector<Piece> pieces_of(const SkinState& skin, const SkinTriangles& triangl
   return pieces;
 }
 
-// Heights of the skin above the skin without folds, whose points and normals are here as well.
+// Heights of the skin above the skin without folds, whose points are here as well.
 struct SmoothSkin
 {
   std::vector<double> height;
-  std::vector<Vector> foot, normal;
+  std::vector<Vector> foot;
 };
 
-SmoothSkin smooth_skin(const SkinState& skin, const SkinTriangles& triangles, double window,
+// Finds the heights of the corners of the triangles `of`; those of other vertices are 0.
+SmoothSkin smooth_skin(const SkinState& skin, const SkinTriangles& triangles, const SkinTriangles& of, double window,
                        const std::function<void(double)>& progress)
 {
-  const Cells cells(pieces_of(skin, triangles, piece_size * window), 2.5 * window);
-  SmoothSkin out;
-  for (std::size_t i = 0; i < skin.vertices.size(); ++i)
+  const Cells cells(pieces_of(skin, triangles, piece_size * window), reach * window);
+  const std::size_t count = skin.vertices.size();
+  SmoothSkin out{ std::vector<double>(count, 0), std::vector<Vector>(count, Vector::Zero()) };
+  std::vector<bool> used(count, false);
+  for (const auto& t : of)
+    for (const std::int32_t v : t)
+      used[v] = true;
+  for (std::size_t i = 0; i < count; ++i)
   {
+    if (!used[i])
+      continue;
     if (progress && i % vertices_per_report == 0)
       progress(static_cast<double>(i) / static_cast<double>(skin.vertices.size()));
     const Vector at = to_eigen(skin.vertices[i]), own = to_eigen(skin.normals[i]);
@@ -142,9 +151,8 @@ SmoothSkin smooth_skin(const SkinState& skin, const SkinTriangles& triangles, do
       right += weight * d.dot(normal) * terms;
     }
     const double height = -window * matrix.ldlt().solve(right)[0];
-    out.height.push_back(height);
-    out.normal.push_back(normal);
-    out.foot.push_back(at - height * normal);
+    out.height[i] = height;
+    out.foot[i] = at - height * normal;
   }
   return out;
 }
@@ -310,24 +318,36 @@ double median(std::vector<double> values)
 
 std::vector<double> fold_heights(const SkinState& skin, const SkinTriangles& triangles, double window)
 {
-  return smooth_skin(skin, triangles, window, {}).height;
+  return smooth_skin(skin, triangles, triangles, window, {}).height;
 }
 
-Wrinkles measure_wrinkles(const SkinState& rest, const SkinState& now, const SkinTriangles& triangles,
-                          const WrinkleSettings& settings, const std::function<void(double)>& progress)
+WrinkleMeter::WrinkleMeter(SkinState rest, SkinTriangles triangles, const WrinkleSettings& settings,
+                           const Progress& progress)
+    : rest_(std::move(rest)), triangles_(std::move(triangles)), settings_(settings)
 {
-  const auto half = [&](double begin) -> std::function<void(double)>
+  // The ridges beside a furrow of the box may lie outside.
+  const double margin = reach * settings.window;
+  const auto near = [&](std::int32_t v)
   {
-    if (!progress)
-      return {};
-    return [&progress, begin](double done) { progress(begin + 0.5 * done); };
+    bool inside = true;
+    for (int axis = 0; axis < 3; ++axis)
+      inside = inside && rest_.vertices[v][axis] > settings.lower[axis] - margin &&
+               rest_.vertices[v][axis] < settings.upper[axis] + margin;
+    return inside;
   };
-  const SmoothSkin smooth = smooth_skin(now, triangles, settings.window, half(0));
-  const std::vector<double> before = smooth_skin(rest, triangles, settings.window, half(0.5)).height;
+  for (const auto& t : triangles_)
+    if (std::any_of(t.begin(), t.end(), near))
+      near_.push_back(t);
+  heights_ = smooth_skin(rest_, triangles_, near_, settings.window, progress).height;
+}
+
+Wrinkles WrinkleMeter::measure(const SkinState& now, const Progress& progress) const
+{
+  const SmoothSkin smooth = smooth_skin(now, triangles_, near_, settings_.window, progress);
   std::vector<double> heights(smooth.height);
   for (std::size_t v = 0; v < heights.size(); ++v)
-    heights[v] -= before[v];
-  const auto [direction, across] = directions_of(rest, smooth, heights, triangles, settings);
+    heights[v] -= heights_[v];
+  const auto [direction, across] = directions_of(rest_, smooth, heights, near_, settings_);
   Wrinkles found;
   if (direction.isZero())
     return found;
@@ -335,10 +355,10 @@ Wrinkles measure_wrinkles(const SkinState& rest, const SkinState& now, const Ski
   std::vector<OpenFurrow> furrows;
   std::vector<double> gaps;
   std::size_t bottoms_found = 0, sections_folded = 0;
-  for (auto& [index, section] : sections_of(rest, now, smooth, heights, triangles, direction, across, settings))
+  for (auto& [index, section] : sections_of(rest_, now, smooth, heights, near_, direction, across, settings_))
   {
-    const std::vector<Bottom> bottoms = bottoms_of(section, settings.least_depth);
-    join(furrows, index, bottoms, 2.5 * settings.section_distance);
+    const std::vector<Bottom> bottoms = bottoms_of(section, settings_.least_depth);
+    join(furrows, index, bottoms, 2.5 * settings_.section_distance);
     for (std::size_t b = 0; b < bottoms.size(); ++b)
     {
       found.depth += bottoms[b].depth;
@@ -350,7 +370,7 @@ Wrinkles measure_wrinkles(const SkinState& rest, const SkinState& now, const Ski
     sections_folded += bottoms.empty() ? 0 : 1;
   }
   for (const OpenFurrow& furrow : furrows)
-    if (furrow.sum.length >= settings.least_length)
+    if (furrow.sum.length >= settings_.least_length)
     {
       Furrow mean = furrow.sum;
       mean.depth /= furrow.bottoms;

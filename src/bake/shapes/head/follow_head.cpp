@@ -126,8 +126,8 @@ Scene following_head(const Scene& given)
       volume.depth_max *= std::max(1.0, first->shape->tissue);
   }
   follower.move_sides(scene.skin.crop);
-  if (scene.film)
-    follower.move(scene.film->crop);
+  for (SceneFilm& film : scene.films)
+    follower.move(film.crop);
   for (SceneMuscle& muscle : scene.muscles)
   {
     follower.move(muscle.origin.points);
