@@ -7,6 +7,7 @@
 #include "frontalis/physics/time_step.hpp"
 #include "solver/stepping/effect_parts.hpp"
 #include "solver/stepping/mass_factors.hpp"
+#include "solver/stepping/sliver_hourglass.hpp"
 #include "solver/material_laws.hpp"
 #include "solver/stepping/step_bound.hpp"
 
@@ -112,6 +113,16 @@ std::vector<std::int32_t> held_nodes(const Model& model)
   return held.size() < directions.size() ? held : std::vector<std::int32_t>();
 }
 
+// Hourglass stiffness of a full voxel of the softest material [N/m].
+double softest_hourglass(const Model& model)
+{
+  const auto& h = model.spacing;
+  double young = std::numeric_limits<double>::infinity();
+  for (const Material& material : model.materials)
+    young = std::min(young, physics::young_modulus(shear_at_rest(material), double(material.parameters[1])));
+  return physics::hourglass_stiffness(young, h[0] * h[1] * h[2], std::max({ h[0], h[1], h[2] }));
+}
+
 void mix_viscosity(const Model& model, std::size_t voxel, VoxelProperties& out)
 {
   double stiffness = 0;
@@ -165,6 +176,9 @@ Discretisation::Discretisation(const Model& model)
         viscous_time_min = viscous_time_min > 0 ? std::min(viscous_time_min, time) : time;
       }
   added = added_stiffness(model, *this);
+  // Gauss points, assumed strain and tissue centres give hourglass modes stiffness of their own.
+  if (!assumed_strain && !selective_reduced && model.tissue_centre.empty())
+    full_hourglass_ = softest_hourglass(model);
   VoxelProperties v;
   const EffectSet running = std::exchange(running_, EffectSet());  // the stiffness here is that without fibres
   for (std::size_t e = 0; e < model.tissue_centre.size(); ++e)
@@ -308,6 +322,9 @@ void Discretisation::mix(std::size_t e, VoxelProperties& out) const
     part.per_tangent = part.weight * out.tissue_volume / (shortest * shortest);
   out.hourglass = physics::hourglass_stiffness(physics::young_modulus(shear, out.kappa), out.tissue_volume,
                                                std::max({ h[0], h[1], h[2] }));
+  if (const double modes = physics::voxel_stiffness(shear, out.kappa, 0.0, out.tissue_volume, h[0], h[1], h[2]);
+      full_hourglass_ > 0)
+    out.hourglass = std::max(out.hourglass, sliver_hourglass(double(model.fill[e]), full_hourglass_, modes));
   if (assumed_strain)
   {
     out.stabilisation = physics::assumed_strain(shear, out.kappa, out.tissue_volume);

@@ -1,4 +1,4 @@
-// Hard cases of shapes: crushed, twisted, scrambled, turning, dangling and slender voxels.
+// Hard cases of shapes: crushed, twisted, scrambled, turning, dangling, nearly empty and slender voxels.
 
 #include "frontalis/physics/number.hpp"
 #include "frontalis/study/statics.hpp"
@@ -190,6 +190,53 @@ void dangling(CaseRun& run)
                      1e3 * mean_displacement(motion.displacements(), alone)[2], "fall");
 }
 
+// Length of the longest edge of the voxels with little tissue, in voxel edges.
+double longest_edge_of_slivers(const Model& model, const Vectors& u)
+{
+  double longest = 0;
+  for (std::size_t e = 0; e < model.voxels.size(); ++e)
+    for (std::size_t corner = 0; corner < 8 && model.fill[e] < 0.5F; ++corner)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+      {
+        const std::size_t from = model.voxel_nodes[e][corner & ~(std::size_t{ 1 } << axis)];
+        const std::size_t to = model.voxel_nodes[e][corner | std::size_t{ 1 } << axis];
+        const auto edge = vector_of(rest_position(model, to)) + vector_of(u[to]) -
+                          vector_of(rest_position(model, from)) - vector_of(u[from]);
+        longest = std::max(longest, norm(edge) / model.spacing[axis]);
+      }
+  return longest;
+}
+
+void slivers(CaseRun& run)
+{
+  VoxelBox box{ run.size(), { { 1e-3, 1e-3, 1e-3 } }, { soft_tissue() } };
+  const double fill = run.number("fill");
+  // a block whose top layer has holes of 2 x 2 voxels with a sliver in one corner
+  box.fill = [&](const Voxel& v) -> double
+  {
+    const bool hole = v[2] + 1 == box.size[2] && v[0] % 4 > 1 && v[1] % 4 > 1;
+    return !hole ? 1 : v[0] % 4 == 2 && v[1] % 4 == 2 ? fill : 0;
+  };
+  Model model = voxel_model(box);
+  model.damping = run.number("damping", "1/s");
+  hold_face(model, 0, false);
+  hold_face(model, 0, true, "press");
+  GuardedTrial motion(run, model);
+  const RigidTransform in = shifted({ { -0.01 * run.number("pressed_by", "%") * model.size[0] * 1e-3, 0, 0 } });
+  double longest = 0;
+  for (const RigidTransform& pose : { in, RigidTransform() })
+    for (int part = 0; part < 100; ++part)
+    {
+      motion.advance({ 0.01 * run.seconds("watched"), motion.controls(0, pose) });
+      longest = std::max(longest, longest_edge_of_slivers(model, motion.displacements()));
+    }
+  run.check("longest edge of a sliver", "1", 1, longest, "edge");
+  motion.check_balance("pressed at once and let go", "slivers",
+                       "A block with slivers in its top layer is pressed at once, and let go");
+  motion.advance({ run.seconds("rest"), motion.controls(), 10 });
+  run.check("remaining displacement", "mm", 0, 1e3 * farthest(motion.displacements()), "left");
+}
+
 void slender(CaseRun& run)
 {
   for (const bool long_way : { true, false })
@@ -224,6 +271,7 @@ CaseFunctions hard_shapes()
            { "scrambled", scrambled },
            { "rigid_rotation", rigid_rotation },
            { "dangling", dangling },
+           { "slivers", slivers },
            { "slender", slender } };
 }
 
