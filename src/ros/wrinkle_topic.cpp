@@ -1,7 +1,7 @@
 #include "ros/wrinkle_topic.hpp"
 
 #include "frontalis/ros/conversions.hpp"
-#include "solver/skin/bound_points.hpp"
+#include "frontalis/solver/surface_normals.hpp"
 
 #include <boost/make_shared.hpp>
 

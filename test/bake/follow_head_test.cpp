@@ -96,11 +96,11 @@ TEST(FollowHead, MovesPointsOfMusclesAndShapesAndTheFilm)
   sheet.shape->depths = { { chin, 1e-3 } };
   scene.surfaces.push_back(ball);
   scene.surfaces.push_back(sheet);
-  scene.film.emplace();
+  scene.films.emplace_back();
   for (std::size_t axis = 0; axis < 3; ++axis)
   {
-    scene.film->crop.lower[axis] = chin[axis] - 7e-3;
-    scene.film->crop.upper[axis] = chin[axis] + 7e-3;
+    scene.films[0].crop.lower[axis] = chin[axis] - 7e-3;
+    scene.films[0].crop.upper[axis] = chin[axis] + 7e-3;
   }
   const Scene moved = following_head(scene);
   EXPECT_EQ(moved.muscles[0].origin.points[1], to);
@@ -111,8 +111,8 @@ TEST(FollowHead, MovesPointsOfMusclesAndShapesAndTheFilm)
   EXPECT_EQ(moved.surfaces.back().shape->depths[0].at, to);
   for (std::size_t axis = 0; axis < 3; ++axis)
   {
-    EXPECT_NEAR(moved.film->crop.lower[axis], to[axis] - 7e-3, 1e-12);
-    EXPECT_NEAR(moved.film->crop.upper[axis], to[axis] + 7e-3, 1e-12);
+    EXPECT_NEAR(moved.films[0].crop.lower[axis], to[axis] - 7e-3, 1e-12);
+    EXPECT_NEAR(moved.films[0].crop.upper[axis], to[axis] + 7e-3, 1e-12);
   }
 }
 
