@@ -69,6 +69,43 @@ TEST_P(BodiesTouch, any_number_of_threads_gives_the_same_bits)
   }
 }
 
+// Points of two bodies share the blocks of sixteen that are evaluated together. The solver in double precision
+// evaluates them one by one.
+TEST(PointsOfContact, every_instruction_set_finds_the_forces_of_single_points)
+{
+  Model model = block_and_finger(0.4, true);
+  model.contacts.push_back(model.contacts[0]);
+  model.contacts[0].bone = 0;  // it stands still and does not touch
+  const auto run = [&](int threads)
+  {
+    auto solver = make_solver(std::make_shared<const Model>(model), { "cpu", threads, 1e-5 });
+    press_and_stroke(*solver, 5e-3);
+    return solver;
+  };
+  model.precision = Precision::double_precision;
+  const auto expected = run(1);
+  const std::array<double, 3> force = expected->reactions()[1].force;
+  EXPECT_GT(std::abs(force[2]), 1e-3);
+  model.precision = Precision::single;
+  for (const char* instructions : { "baseline", "avx2", "avx512" })
+  {
+    ::setenv("FRONTALIS_INSTRUCTION_SET", instructions, 1);
+    try
+    {
+      const auto one = run(1);
+      for (std::size_t axis : { 0, 2 })
+        EXPECT_NEAR(one->reactions()[1].force[axis], force[axis], 1e-3 * std::abs(force[axis])) << instructions;
+      for (const int threads : { 2, 3 })
+        EXPECT_EQ(displacements(*run(threads)), displacements(*one)) << instructions << threads;
+    }
+    catch (const Error&)
+    {
+      // this machine lacks the instruction set
+    }
+    ::unsetenv("FRONTALIS_INSTRUCTION_SET");
+  }
+}
+
 TEST_P(BodiesTouch, contact_is_switched_while_running)
 {
   const Model model = block_and_finger(0.4);

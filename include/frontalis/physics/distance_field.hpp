@@ -77,13 +77,18 @@ FRONTALIS_LAW FieldPoint<double> field_point(const DistanceField& field, const V
   return point;
 }
 
+/// The n-th of the samples around a cell, x fastest; `first` is what around() returned.
+FRONTALIS_LAW float gather_one(const float* first, int n)
+{
+  return first[(n / 9 * DistanceField::brick_row + n / 3 % 3) * DistanceField::brick_row + n % 3];
+}
 /// Loads the samples around a cell; `first` is what around() returned.
 FRONTALIS_LAW FieldSamples gather(const float* first)
 {
   FieldSamples samples;
   FRONTALIS_UNROLL
   for (int n = 0; n < 27; ++n)
-    samples.value[n] = first[(n / 9 * DistanceField::brick_row + n / 3 % 3) * DistanceField::brick_row + n % 3];
+    samples.value[n] = gather_one(first, n);
   return samples;
 }
 

@@ -27,11 +27,11 @@ struct FieldSamples
   float value[27];
 };
 
-/// Evaluates the spline at `place` in a cell. Place and cell are those of enter_cell(). Its second derivatives may jump
-/// at the cell's faces, but are at most 2 / spacing, because distances of neighbouring samples differ by at most the
-/// spacing.
-template <class T>
-FRONTALIS_LAW FieldValue<T> spline(const FieldSamples& samples, const T& inverse_spacing, const Vec3<T>& place)
+/// Evaluates the spline at `place` in a cell, from `samples` like FieldSamples. Place and cell are those of
+/// enter_cell(). Its second derivatives may jump at the cell's faces, but are at most 2 / spacing, because distances of
+/// neighbouring samples differ by at most the spacing.
+template <class T, class Samples>
+FRONTALIS_LAW FieldValue<T> spline(const Samples& samples, const T& inverse_spacing, const Vec3<T>& place)
 {
   using N = Number<T>;
   const T x[3] = { place.x, place.y, place.z };
@@ -58,7 +58,7 @@ FRONTALIS_LAW FieldValue<T> spline(const FieldSamples& samples, const T& inverse
     FRONTALIS_UNROLL
     for (int j = 0; j < 3; ++j)
     {
-      const float* const row = samples.value + 9 * k + 3 * j;
+      const auto* const row = samples.value + 9 * k + 3 * j;
       const T of[3] = { T(row[0]), T(row[1]), T(row[2]) };
       g[j] = sum(w[0], of);
       gx[j] = sum(d[0], of);

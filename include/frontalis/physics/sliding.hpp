@@ -22,19 +22,24 @@ struct LevelPlane
   T slip;          ///< how far the node may move before the plane's error exceeds plane_error, to second order [m]
 };
 
-/// Finds the tangent plane of the set on which the field is `level` [m], from the field at a point. Returns false, and
-/// leaves `plane` unchanged, if the gradient is too short.
+/// Finds the tangent plane of the set on which the field is `level` [m], from the field at a point where its gradient
+/// has the length `slope`, not 0.
+template <class T>
+FRONTALIS_LAW LevelPlane<T> level_plane(const FieldValue<T>& field, const T& level, const T& slope)
+{
+  using N = Number<T>;
+  const T scale = T(1) / slope;
+  return { scale * field.gradient, scale * (field.value - level),
+           N::min(N::sqrt(N::of(2 * plane_error) * slope / N::max(field.curvature, N::of(1e-6))), field.reach) };
+}
+/// Returns false, and leaves `plane` unchanged, if the gradient is too short.
 template <class T>
 FRONTALIS_LAW bool level_plane(const FieldValue<T>& field, const T& level, LevelPlane<T>& plane)
 {
-  using N = Number<T>;
   const T slope = norm(field.gradient);
-  if (!(slope > N::of(least_gradient)))
+  if (!(slope > Number<T>::of(least_gradient)))
     return false;
-  const T scale = T(1) / slope;
-  plane.normal = scale * field.gradient;
-  plane.distance = scale * (field.value - level);
-  plane.slip = N::min(N::sqrt(N::of(2 * plane_error) * slope / N::max(field.curvature, N::of(1e-6))), field.reach);
+  plane = level_plane(field, level, slope);
   return true;
 }
 

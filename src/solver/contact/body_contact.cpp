@@ -15,24 +15,14 @@ namespace
 
 using Vector = physics::Vec3<double>;
 
-// Prefetches the samples around x, which is in the frame of the field.
-void fetch_samples(const physics::DistanceField& field, const Vector& x)
-{
-  if (field.radius > 0)
-    return;
-  const float* samples = field.around(physics::field_point(field, x).cell);
-  for (int plane = 0; plane < 3 && samples != nullptr; ++plane)
-  {
-    __builtin_prefetch(samples);
-    __builtin_prefetch(samples + 2 * physics::DistanceField::brick_row + 2);
-    samples += physics::DistanceField::brick_row * physics::DistanceField::brick_row;
-  }
-}
+// Upper bound of the rounding errors of a distance in single precision [m].
+constexpr double distance_error = 1e-6;
 
 }  // namespace
 
 template <class Real>
-BodyContact<Real>::BodyContact(const Model& model, const Discretisation& discretisation) : model_(model)
+BodyContact<Real>::BodyContact(const Model& model, const Discretisation& discretisation, PointKernel<Real> kernel)
+    : model_(model), blocks_(kernel)
 {
   const auto* const stiffness = discretisation.find_added<ContactStiffness>();
   for (std::size_t c = 0; c < model.contacts.size(); ++c)
@@ -59,6 +49,7 @@ BodyContact<Real>::BodyContact(const Model& model, const Discretisation& discret
   }
   std::partial_sum(plane_points_.begin(), plane_points_.end(), plane_points_.begin());
   nodes_ = BoundNodeWay(model, bound);
+  blocks_.make(model, points_);
   reset();
 }
 
@@ -95,6 +86,7 @@ void BodyContact<Real>::list_arrays(ArrayList& list)
   const Effect effect = Effect::contact;
   list.add(effect, "points", points_);
   list.add(effect, "points", plane_points_);
+  blocks_.list_arrays(list);
   nodes_.list_arrays(list, effect);
   list.add(effect, "bodies", fields_);
   list.add(effect, "forces", forces_);
@@ -154,16 +146,16 @@ std::vector<BodyState> BodyContact<Real>::next(const ConstraintStep& step) const
 }
 
 template <class Real>
-void BodyContact<Real>::find_force(std::size_t p, const Vector& x, const BodyState& body, double response)
+void BodyContact<Real>::find_force(std::size_t p, const Real* const u[3], const BodyState& body, double response)
 {
   const Point& point = points_[p];
   const double stiffness = double(point.stiffness);
   const Contact& contact = model_.contacts[point.body];
   const physics::DistanceField& field = fields_[point.body];
   const physics::Pose pose = pose_of(body.pose);
-  const Vector arm = pose.turned(x);
+  const Vector x = pose.inwards(place(point, u)), arm = pose.turned(x);
   physics::FieldValue<double> value{};
-  const bool sampled = physics::sample(field, physics::field_point(field, x), value);
+  const bool sampled = blocks_.sample(field, p, x, value);
   physics::Grip<double>& grip = grips_[p];
   due_[p] = 0;
   if (sampled && value.value < 0)
@@ -191,6 +183,10 @@ void BodyContact<Real>::before_step(const NodeShare& share, const Real* const u[
 {
   const std::vector<BodyState> now = next(step);
   const double response = physics::friction_response(step.dt);
+  static_assert(chunk_size % PointBlock<Real>::width == 0, "a chunk is a whole number of blocks");
+  std::vector<PosedBody<Real>> bodies;
+  for (std::size_t b = 0; b < now.size(); ++b)
+    bodies.push_back(ContactBlocks<Real>::posed(now[b].pose, fields_[b]));
   const std::size_t begin = chunks_.size() * share.thread / share.threads;
   const std::size_t end = chunks_.size() * (share.thread + 1) / share.threads;
   for (std::size_t c = begin; c < end; ++c)
@@ -200,20 +196,17 @@ void BodyContact<Real>::before_step(const NodeShare& share, const Real* const u[
       continue;
     chunk = { std::numeric_limits<double>::max(), 0 };
     const std::size_t first = c * chunk_size, last = std::min(first + chunk_size, points_.size());
-    // Samples are far apart in memory, so that those of a whole chunk of points are requested before the first is
-    // needed.
-    Vector x[chunk_size];
-    for (std::size_t p = first; p < last; ++p)
-      if (const BodyState& body = now[points_[p].body]; !(due_[p] > body.way))
-      {
-        x[p - first] = pose_of(body.pose).inwards(place(points_[p], u));
-        fetch_samples(fields_[points_[p].body], x[p - first]);
-      }
+    Real distance[chunk_size];
+    if (blocks_.present())
+      blocks_.find(first, last, u, bodies, distance);
     for (std::size_t p = first; p < last; ++p)
     {
       const BodyState& body = now[points_[p].body];
-      if (!(due_[p] > body.way))
-        find_force(p, x[p - first], body, response);
+      const double away = blocks_.present() ? double(distance[p - first]) - distance_error : 0;
+      if (away > 0 && touches_[p] == Touching::no && grips_[p].normal == 0)
+        due_[p] = body.way + away / physics::steepest_field;
+      else if (!(due_[p] > body.way))
+        find_force(p, u, body, response);
       chunk.due = std::min(chunk.due, due_[p]);
       chunk.touches |= touches_[p] != Touching::no ? 1 : 0;
     }

@@ -5,6 +5,7 @@
 #include "frontalis/physics/pose.hpp"
 #include "frontalis/physics/trilinear.hpp"
 #include "solver/contact/bound_node_way.hpp"
+#include "solver/contact/contact_blocks.hpp"
 #include "solver/contact/pushed_contact.hpp"
 #include "solver/stepping/node_part.hpp"
 
@@ -25,7 +26,8 @@ template <class Real>
 class BodyContact : public NodePart<Real>
 {
 public:
-  BodyContact(const Model& model, const Discretisation& discretisation);
+  /// `kernel`: finds which points are away from all bodies, sixteen at a time; null: each point is evaluated alone.
+  BodyContact(const Model& model, const Discretisation& discretisation, PointKernel<Real> kernel = nullptr);
 
   void run(EffectSet running) override;
   void reset() override;
@@ -119,8 +121,8 @@ private:
   Energy energy_now(const Real* const u[3], const std::vector<RigidTransform>& bones,
                     std::vector<std::array<double, 3>>& forces) const;
   std::vector<BodyState> next(const ConstraintStep& step) const;
-  /// Finds the force on a point at x, in the frame of its body.
-  void find_force(std::size_t p, const Vector& x, const BodyState& body, double response);
+  /// Finds the force on a point.
+  void find_force(std::size_t p, const Real* const u[3], const BodyState& body, double response);
   physics::Grip<double> grip_at(std::size_t p, const Vector& x) const
   {
     const auto& grip = grips_[p];
@@ -134,6 +136,7 @@ private:
   std::vector<Point> points_;  // sorted by voxel
   // first point in each plane of voxels; the last two entries are the number of points
   std::vector<std::int32_t> plane_points_;
+  ContactBlocks<Real> blocks_;
   BoundNodeWay nodes_;
   std::vector<physics::DistanceField> fields_;
   // Values of the present step:

@@ -4,16 +4,18 @@
 namespace frontalis
 {
 
-void slide_kernel_avx512(const SlideArguments<float>&, std::int32_t, std::int32_t);
+SlideKernels<float> slide_kernels_avx512();
 ShellKernels<float> shell_kernels_avx512();
 TouchKernels<float> touch_kernels_avx512();
+void point_kernel_avx512(PointBlock<float>&, const float* const[3], const PosedBody<float>*, float*);
 void attach_kernel_avx512(const AttachArguments<float>&, std::int32_t, std::int32_t);
 
 CpuKernelChoice cpu_kernel_avx512(const char* name)
 {
   return { CpuKernelBody<xsimd::avx512bw, float>::run,
            CpuKernelBody<xsimd::avx512bw, double>::run,
-           { slide_kernel_avx512, attach_kernel_avx512, shell_kernels_avx512(), touch_kernels_avx512() },
+           { slide_kernels_avx512(), attach_kernel_avx512, shell_kernels_avx512(), touch_kernels_avx512(),
+             point_kernel_avx512 },
            CpuMonitor<xsimd::avx512bw>::run,
            name };
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "solver/cpu/attach_kernel.hpp"
+#include "solver/cpu/point_kernel.hpp"
 #include "solver/cpu/shell_kernel.hpp"
 #include "solver/cpu/slide_kernel.hpp"
 #include "solver/cpu/touch_kernel.hpp"
@@ -12,10 +13,11 @@ namespace frontalis
 template <class Real>
 struct PartKernels
 {
-  SlideKernel<Real> slide = slide_plainly<Real>;
+  SlideKernels<Real> slide = plain_slide_kernels<Real>();
   AttachKernel<Real> attach = attach_plainly<Real>;
   ShellKernels<Real> shell = plain_shell_kernels<Real>();
   TouchKernels<Real> touch = plain_touch_kernels<Real>();
+  PointKernel<Real> point = nullptr;  ///< null: points are processed one by one
 };
 
 }  // namespace frontalis

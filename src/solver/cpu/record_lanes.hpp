@@ -56,18 +56,28 @@ struct RecordLanes
   /// Gathers the vectors of the records that begin at p[stride * index].
   static FRONTALIS_LAW Vector gather_records(const float* p, std::ptrdiff_t stride, const std::int32_t* index)
   {
+    return gather_vectors([=](int l) { return p + stride * index[l]; });
+  }
+
+  /// Gathers the vectors at the addresses at(lane). The number after each vector must be readable or, if `before` is 1,
+  /// the number before it.
+  template <int before = 0, class At>
+  static FRONTALIS_LAW Vector gather_vectors(const At& at)
+  {
 #if defined(__SSE2__)
     typename Batch::register_type record[4] = {};
     for (int i = 0; i < 4; ++i)
-      each_quarter(record[i], [&](int l) { return _mm_loadu_ps(p + stride * index[l + i]); });
+      each_quarter(record[i], [&](int l) { return _mm_loadu_ps(at(l + i) - before); });
     const Batch xy = shuffled<0x44>(record[0], record[1]), xy2 = shuffled<0x44>(record[2], record[3]);
     const Batch zw = shuffled<0xee>(record[0], record[1]), zw2 = shuffled<0xee>(record[2], record[3]);
+    if constexpr (before == 1)
+      return { shuffled<0xdd>(xy, xy2), shuffled<0x88>(zw, zw2), shuffled<0xdd>(zw, zw2) };
     return { shuffled<0x88>(xy, xy2), shuffled<0xdd>(xy, xy2), shuffled<0x88>(zw, zw2) };
 #else
     float lane[3][count];
     for (int l = 0; l < count; ++l)
       for (int axis = 0; axis < 3; ++axis)
-        lane[axis][l] = p[stride * index[l] + axis];
+        lane[axis][l] = at(l)[axis];
     return { load(lane[0]), load(lane[1]), load(lane[2]) };
 #endif
   }

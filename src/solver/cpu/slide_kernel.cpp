@@ -6,25 +6,34 @@
 namespace frontalis
 {
 
+namespace
+{
+
 template <class Real>
-void slide_plainly(const SlideArguments<Real>& g, std::int32_t first, std::int32_t last)
+std::int32_t slide_plainly(const SlideArguments<Real>& g, std::int32_t first, std::int32_t last)
 {
   using Vector = physics::Vec3<Real>;
+  std::int32_t waiting = 0;
   for (auto block = first; block < last; ++block)
   {
-    SlidingBlock<Real>& b = g.blocks[block];
-    for (std::int32_t l = 0; l < g.count[block]; ++l)
+    const SlidingBlock<Real>& b = g.blocks[block];
+    const auto at = [&](Real* const(&of)[3], std::int32_t l)
     {
       const auto n = g.node[block] + l;
-      Vector u{ g.u[0][n], g.u[1][n], g.u[2][n] }, v{ g.v[0][n], g.v[1][n], g.v[2][n] };
-      const Vector slip = u - Vector{ b.reference[0][l], b.reference[1][l], b.reference[2][l] };
-      if (dot(slip, slip) > b.slip_squared[l])
-      {
-        const Real at[3] = { u.x, u.y, u.z };
-        Real with[3] = { v.x, v.y, v.z };
-        g.renew(g.context, block, l, at, with);
-        v = { with[0], with[1], with[2] };
-      }
+      return Vector{ of[0][n], of[1][n], of[2][n] };
+    };
+    std::uint32_t waits = 0;
+    for (std::int32_t l = 0; l < g.count[block] && g.waiting != nullptr; ++l)
+    {
+      const Vector slip = at(g.u, l) - Vector{ b.reference[0][l], b.reference[1][l], b.reference[2][l] };
+      waits |= dot(slip, slip) > b.slip_squared[l] ? 1U << l : 0U;
+    }
+    if (waits != 0)
+      g.waiting[waiting++] = { block, waits };
+    for (std::int32_t l = 0; l < g.count[block] && waits == 0; ++l)
+    {
+      const auto n = g.node[block] + l;
+      Vector u = at(g.u, l), v = at(g.v, l);
       const Vector normal{ b.normal[0][l], b.normal[1][l], b.normal[2][l] };
       physics::slide(normal, b.offset[l], u, v);
       v = v + b.speed[l] * normal;
@@ -36,10 +45,19 @@ void slide_plainly(const SlideArguments<Real>& g, std::int32_t first, std::int32
       }
     }
   }
+  return waiting;
 }
 
-template void slide_plainly(const SlideArguments<float>&, std::int32_t, std::int32_t);
-template void slide_plainly(const SlideArguments<double>&, std::int32_t, std::int32_t);
+}  // namespace
+
+template <class Real>
+SlideKernels<Real> plain_slide_kernels()
+{
+  return { slide_plainly<Real>, nullptr };
+}
+
+template SlideKernels<float> plain_slide_kernels();
+template SlideKernels<double> plain_slide_kernels();
 
 template <class Real>
 void attach_plainly(const AttachArguments<Real>& g, std::int32_t first, std::int32_t last)

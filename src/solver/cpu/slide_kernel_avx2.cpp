@@ -4,10 +4,7 @@
 namespace frontalis
 {
 
-void slide_kernel_avx2(const SlideArguments<float>& arguments, std::int32_t first, std::int32_t last)
-{
-  SlideKernelBody<xsimd::fma3<xsimd::avx2>>::run(arguments, first, last);
-}
+SlideKernels<float> slide_kernels_avx2() { return SlideKernelBody<xsimd::fma3<xsimd::avx2>>::kernels(); }
 
 void attach_kernel_avx2(const AttachArguments<float>& arguments, std::int32_t first, std::int32_t last)
 {

@@ -4,10 +4,7 @@
 namespace frontalis
 {
 
-void slide_kernel_avx512(const SlideArguments<float>& arguments, std::int32_t first, std::int32_t last)
-{
-  SlideKernelBody<xsimd::avx512bw>::run(arguments, first, last);
-}
+SlideKernels<float> slide_kernels_avx512() { return SlideKernelBody<xsimd::avx512bw>::kernels(); }
 
 void attach_kernel_avx512(const AttachArguments<float>& arguments, std::int32_t first, std::int32_t last)
 {

@@ -4,10 +4,7 @@
 namespace frontalis
 {
 
-void slide_kernel_baseline(const SlideArguments<float>& arguments, std::int32_t first, std::int32_t last)
-{
-  SlideKernelBody<xsimd::default_arch>::run(arguments, first, last);
-}
+SlideKernels<float> slide_kernels_baseline() { return SlideKernelBody<xsimd::default_arch>::kernels(); }
 
 void attach_kernel_baseline(const AttachArguments<float>& arguments, std::int32_t first, std::int32_t last)
 {

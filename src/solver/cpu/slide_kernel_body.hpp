@@ -1,7 +1,7 @@
 #pragma once
 
 #include "frontalis/physics/sliding.hpp"
-#include "solver/cpu/simd_number.hpp"
+#include "solver/cpu/field_lanes.hpp"
 #include "solver/cpu/slide_kernel.hpp"
 
 namespace frontalis
@@ -23,32 +23,25 @@ struct SlideKernelBody
     return { load(x), load(y), load(z) };
   }
 
-  static void renew(const SlideArguments<float>& g, std::int32_t block, int offset, float* const u[3],
-                    float* const v[3], const Batch& excess)
+  static std::uint32_t waits(const Block& b, float* const u[3])
   {
-    float lane[lanes];
-    excess.store_unaligned(lane);
-    for (int l = 0; l < lanes; ++l)
-      if (lane[l] > 0)
-      {
-        const float at[3] = { u[0][offset + l], u[1][offset + l], u[2][offset + l] };
-        float with[3] = { v[0][offset + l], v[1][offset + l], v[2][offset + l] };
-        g.renew(g.context, block, offset + l, at, with);
-        for (int axis = 0; axis < 3; ++axis)
-          v[axis][offset + l] = with[axis];
-      }
+    std::uint32_t bits = 0;
+    for (int l = 0; l < Block::width; l += lanes)
+    {
+      const Vector slip =
+          load(u[0] + l, u[1] + l, u[2] + l) - load(b.reference[0] + l, b.reference[1] + l, b.reference[2] + l);
+      const Batch excess = dot(slip, slip) - load(b.slip_squared + l);
+      if (xsimd::any(excess > Batch(0.0f)))
+        bits |= RecordLanes<Architecture>::positive(excess) << l;
+    }
+    return bits;
   }
 
-  static void slide(const SlideArguments<float>& g, std::int32_t block, float* const u[3], float* const v[3])
+  static void slide(const Block& b, float* const u[3], float* const v[3])
   {
-    Block& b = g.blocks[block];
     for (int l = 0; l < Block::width; l += lanes)
     {
       Vector at = load(u[0] + l, u[1] + l, u[2] + l);
-      const Vector slip = at - load(b.reference[0] + l, b.reference[1] + l, b.reference[2] + l);
-      const Batch excess = dot(slip, slip) - load(b.slip_squared + l);
-      if (xsimd::any(excess > Batch(0.0f)))
-        renew(g, block, l, u, v, excess);
       Vector velocity = load(v[0] + l, v[1] + l, v[2] + l);
       const Vector normal = load(b.normal[0] + l, b.normal[1] + l, b.normal[2] + l);
       physics::slide(normal, load(b.offset + l), at, velocity);
@@ -62,37 +55,60 @@ struct SlideKernelBody
     }
   }
 
-  static void run(const SlideArguments<float>& g, std::int32_t first, std::int32_t last)
+  static std::int32_t run(const SlideArguments<float>& g, std::int32_t first, std::int32_t last)
   {
+    std::int32_t waiting = 0;
     for (auto block = first; block < last; ++block)
     {
       const std::int32_t node = g.node[block], count = g.count[block];
       float* const u[3] = { g.u[0] + node, g.u[1] + node, g.u[2] + node };
       float* const v[3] = { g.v[0] + node, g.v[1] + node, g.v[2] + node };
-      if (count == Block::width)
-      {
-        slide(g, block, u, v);
-        continue;
-      }
-      // The nodes beyond the block belong to another thread, so that the loop works on a padded copy.
-      float copy[6][Block::width] = {};
+      const bool whole = count == Block::width;
+      // The nodes beyond the block belong to another thread, so that the loops work on a padded copy.
+      float copy[6][Block::width];
       float* const u_copy[3] = { copy[0], copy[1], copy[2] };
       float* const v_copy[3] = { copy[3], copy[4], copy[5] };
-      for (int axis = 0; axis < 3; ++axis)
-        for (std::int32_t l = 0; l < count; ++l)
+      for (int axis = 0; axis < 3 && !whole; ++axis)
+        for (std::int32_t l = 0; l < Block::width; ++l)
         {
-          u_copy[axis][l] = u[axis][l];
-          v_copy[axis][l] = v[axis][l];
+          u_copy[axis][l] = l < count ? u[axis][l] : 0;
+          v_copy[axis][l] = l < count ? v[axis][l] : 0;
         }
-      slide(g, block, u_copy, v_copy);
-      for (int axis = 0; axis < 3; ++axis)
+      if (const auto bits = g.waiting == nullptr ? 0 : waits(g.blocks[block], whole ? u : u_copy); bits != 0)
+      {
+        g.waiting[waiting++] = { block, bits };
+        continue;
+      }
+      slide(g.blocks[block], whole ? u : u_copy, whole ? v : v_copy);
+      for (int axis = 0; axis < 3 && !whole; ++axis)
         for (std::int32_t l = 0; l < count; ++l)
         {
           u[axis][l] = u_copy[axis][l];
           v[axis][l] = v_copy[axis][l];
         }
     }
+    return waiting;
   }
+
+  static void planes(PlaneBatch& b)
+  {
+    using Field = FieldLanes<Architecture>;
+    for (int l = 0; l < PlaneBatch::width; l += lanes)
+    {
+      const auto value = physics::spline(Field::samples(b.first + l), load(b.inverse_spacing + l),
+                                         load(b.place[0] + l, b.place[1] + l, b.place[2] + l));
+      const Batch slope = norm(value.gradient);
+      const auto plane = physics::level_plane(value, load(b.level + l), slope);
+      plane.normal.x.store_unaligned(b.normal[0] + l);
+      plane.normal.y.store_unaligned(b.normal[1] + l);
+      plane.normal.z.store_unaligned(b.normal[2] + l);
+      plane.distance.store_unaligned(b.distance + l);
+      plane.slip.store_unaligned(b.slip + l);
+      slope.store_unaligned(b.slope + l);
+    }
+  }
+
+  static SlideKernels<float> kernels() { return { run, planes }; }
 };
 
 }  // namespace frontalis

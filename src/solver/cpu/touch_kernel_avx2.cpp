@@ -1,3 +1,4 @@
+#include "solver/cpu/point_kernel_body.hpp"
 #include "solver/cpu/record_lanes.hpp"
 #include "solver/cpu/touch_kernel_body.hpp"
 
@@ -5,5 +6,11 @@ namespace frontalis
 {
 
 TouchKernels<float> touch_kernels_avx2() { return TouchKernelBody<RecordLanes<xsimd::fma3<xsimd::avx2>>>::kernels(); }
+
+void point_kernel_avx2(PointBlock<float>& block, const float* const u[3], const PosedBody<float>* bodies,
+                       float* distance)
+{
+  PointKernelBody<xsimd::fma3<xsimd::avx2>>::run(block, u, bodies, distance);
+}
 
 }  // namespace frontalis

@@ -1,3 +1,4 @@
+#include "solver/cpu/point_kernel_body.hpp"
 #include "solver/cpu/record_lanes.hpp"
 #include "solver/cpu/touch_kernel_body.hpp"
 
@@ -5,5 +6,11 @@ namespace frontalis
 {
 
 TouchKernels<float> touch_kernels_baseline() { return TouchKernelBody<RecordLanes<xsimd::default_arch>>::kernels(); }
+
+void point_kernel_baseline(PointBlock<float>& block, const float* const u[3], const PosedBody<float>* bodies,
+                           float* distance)
+{
+  PointKernelBody<xsimd::default_arch>::run(block, u, bodies, distance);
+}
 
 }  // namespace frontalis

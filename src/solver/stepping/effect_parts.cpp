@@ -21,7 +21,7 @@ std::vector<std::unique_ptr<NodePart<Real>>> node_parts(const Model& model, cons
   parts.push_back(std::make_unique<AttachedNodes<Real>>(model, discretisation.node_mass, kernels.attach));
   parts.push_back(std::make_unique<NodalLoads<Real>>(model, discretisation));
   parts.push_back(std::make_unique<ShellForces<Real>>(model, kernels.shell));
-  parts.push_back(std::make_unique<BodyContact<Real>>(model, discretisation));
+  parts.push_back(std::make_unique<BodyContact<Real>>(model, discretisation, kernels.point));
   parts.push_back(std::make_unique<TissueContact<Real>>(model, discretisation, kernels.touch));
   return parts;
 }

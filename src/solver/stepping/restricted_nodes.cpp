@@ -52,13 +52,15 @@ void set(SlidingBlock<Real>& block, int lane, const Point& normal, double offset
 }  // namespace
 
 template <class Real>
-RestrictedNodes<Real>::RestrictedNodes(const Model& model, SlideKernel<Real> kernel)
-    : model_(model), kernel_(kernel), rigid_(model.rigid), prescribed_(model.prescribed)
+RestrictedNodes<Real>::RestrictedNodes(const Model& model, const SlideKernels<Real>& kernels)
+    : model_(model), kernels_(kernels), rigid_(model.rigid), prescribed_(model.prescribed)
 {
   for (const auto& surface : model.constraint_surfaces)
     fields_.push_back(view(surface.field));
   sort_by_node(rigid_);
   sort_by_node(prescribed_);
+  for (const RigidNode& node : rigid_)
+    rigid_rest_.push_back(rest_point(model, node.node));
   auto sliding = model.sliding;
   sort_by_node(sliding);
   // Replacing a plane that was kept for several steps jolts the tissue. If any surface has friction, no node keeps its
@@ -135,6 +137,7 @@ template <class Real>
 void RestrictedNodes<Real>::list_arrays(ArrayList& list)
 {
   list.add(Effect::rigid_nodes, "rigid nodes", rigid_);
+  list.add(Effect::rigid_nodes, "rigid nodes", rigid_rest_);
   list.add(Effect::prescribed_displacement, "prescribed nodes", prescribed_);
   gliding_.list_arrays(list);
   list.add(Effect::sliding, "nodes that slide", sliding_);
@@ -189,35 +192,90 @@ void RestrictedNodes<Real>::carry(Carrier& carrier, const Real* const u[3], cons
   carrier.moves = moves;
 }
 
+// Finds new planes for the nodes of blocks that have left the range of theirs, sixteen at a time.
 template <class Real>
-void RestrictedNodes<Real>::renew(void* renewal, std::int32_t block, int lane, const Real u[3], Real v[3])
+void RestrictedNodes<Real>::renew(const WaitingBlock* waiting, std::int32_t count, Real* const u[3], Real* const v[3],
+                                  const ConstraintStep& step)
 {
-  const auto& [self, step] = *static_cast<Renewal*>(renewal);
-  const auto index = self->block_sliding_[block][lane];
-  // The kernel also calls this function for a node that does not slide, if the node's displacement is NaN.
-  if (index < 0)
-    return;
-  const Sliding& s = self->sliding_[index];
-  Block& b = self->contacts_.blocks[block];
-  const physics::Pose pose = s.bone < 0 ? physics::Pose() : pose_of(step->bone[s.bone]);
-  const Point moved{ u[0], u[1], u[2] }, place = pose.inwards(s.rest + moved);
-  physics::LevelPlane<double> plane{};
-  if (!s.level.plane_at(place, plane))
-    return;
+  constexpr int width = PlaneBatch::width;
+  PlaneBatch batch{};
+  Renewal renewals[width];
+  int filled = 0;
+  const auto take_batch = [&]
+  {
+    for (int l = filled; l < width; ++l)
+      batch.first[l] = batch.first[0];
+    if (filled > 0)
+      kernels_.planes(batch);
+    for (int l = 0; l < filled; ++l)
+      if (batch.slope[l] > static_cast<float>(physics::least_gradient))
+        take(renewals[l],
+             { { double(batch.normal[0][l]), double(batch.normal[1][l]), double(batch.normal[2][l]) },
+               double(batch.distance[l]),
+               double(batch.slip[l]) },
+             u, v, step);
+    filled = 0;
+  };
+  for (std::int32_t i = 0; i < count; ++i)
+    for (std::uint32_t lanes = waiting[i].lanes; lanes != 0; lanes &= lanes - 1)
+    {
+      const int lane = __builtin_ctz(lanes);
+      const std::int32_t block = waiting[i].block, n = block_node_[block] + lane, index = block_sliding_[block][lane];
+      // A node that does not slide waits if its displacement is infinite.
+      if (index < 0)
+        continue;
+      const Sliding& s = sliding_[index];
+      const Point at = s.rest + Point{ u[0][n], u[1][n], u[2][n] };
+      const Renewal renewal{ block, lane, s.bone < 0 ? at : pose_of(step.bone[s.bone]).inwards(at) };
+      const physics::DistanceField& field = *s.level.field;
+      if (kernels_.planes == nullptr || field.radius > 0)
+      {
+        if (physics::LevelPlane<double> plane{}; s.level.plane_at(renewal.place, plane))
+          take(renewal, plane, u, v, step);
+        continue;
+      }
+      auto point = physics::field_point(field, renewal.place);
+      const double inverse_spacing = 1 / field.spacing;
+      const Point place = physics::enter_cell(inverse_spacing, point.offset, point.cell);
+      batch.first[filled] = field.around(point.cell);
+      if (batch.first[filled] == nullptr)
+        continue;
+      batch.place[0][filled] = static_cast<float>(place.x);
+      batch.place[1][filled] = static_cast<float>(place.y);
+      batch.place[2][filled] = static_cast<float>(place.z);
+      batch.inverse_spacing[filled] = static_cast<float>(inverse_spacing);
+      batch.level[filled] = static_cast<float>(s.level.level);
+      renewals[filled++] = renewal;
+      if (filled == width)
+        take_batch();
+    }
+  take_batch();
+}
+
+// Gives a node a new plane, and turns its velocity with the plane.
+template <class Real>
+void RestrictedNodes<Real>::take(const Renewal& renewal, const physics::LevelPlane<double>& plane, Real* const u[3],
+                                 Real* const v[3], const ConstraintStep& step)
+{
+  const int lane = renewal.lane;
+  const std::int32_t n = block_node_[renewal.block] + lane;
+  const Sliding& s = sliding_[block_sliding_[renewal.block][lane]];
+  Block& b = contacts_.blocks[renewal.block];
+  const physics::Pose pose = s.bone < 0 ? physics::Pose() : pose_of(step.bone[s.bone]);
   Point surface_velocity{ 0, 0, 0 };
   if (s.bone >= 0)
   {
-    const physics::Pose before = pose_of(step->bone_before[s.bone]);
-    surface_velocity = physics::surface_velocity(pose, before, 1 / step->dt, place);
-    self->contacts_.carried[s.carried] = { plane.normal, dot(plane.normal, place) - plane.distance, place };
+    const physics::Pose before = pose_of(step.bone_before[s.bone]);
+    surface_velocity = physics::surface_velocity(pose, before, 1 / step.dt, renewal.place);
+    contacts_.carried[s.carried] = { plane.normal, dot(plane.normal, renewal.place) - plane.distance, renewal.place };
   }
-  const Point normal = pose.turned(plane.normal);
+  const Point normal = pose.turned(plane.normal), moved{ u[0][n], u[1][n], u[2][n] };
   const Point velocity =
       surface_velocity + physics::turned_with_normal({ b.normal[0][lane], b.normal[1][lane], b.normal[2][lane] },
-                                                     normal, Point{ v[0], v[1], v[2] } - surface_velocity);
-  v[0] = static_cast<Real>(velocity.x);
-  v[1] = static_cast<Real>(velocity.y);
-  v[2] = static_cast<Real>(velocity.z);
+                                                     normal, Point{ v[0][n], v[1][n], v[2][n] } - surface_velocity);
+  v[0][n] = static_cast<Real>(velocity.x);
+  v[1][n] = static_cast<Real>(velocity.y);
+  v[2][n] = static_cast<Real>(velocity.z);
   set(b, lane, normal, dot(normal, moved) - plane.distance, moved, dot(normal, surface_velocity));
   b.slip_squared[lane] = static_cast<Real>(plane.slip * plane.slip);
 }
@@ -238,15 +296,14 @@ void RestrictedNodes<Real>::constrain(const NodeShare& share, Real* const u[3], 
     for (Carrier& carrier : contacts_.carriers)
       if (carrier.block >= first_block && carrier.block < end_block)
         carry(carrier, u, step);
-    Renewal renewal{ this, &step };
-    kernel_({ contacts_.blocks.data(),
-              block_node_.data(),
-              block_count_.data(),
-              { u[0], u[1], u[2] },
-              { v[0], v[1], v[2] },
-              renew,
-              &renewal },
-            first_block, end_block);
+    std::vector<WaitingBlock> waiting(static_cast<std::size_t>(end_block - first_block));
+    SlideArguments<Real> nodes{ contacts_.blocks.data(), block_node_.data(),   block_count_.data(),
+                                { u[0], u[1], u[2] },    { v[0], v[1], v[2] }, waiting.data() };
+    const std::int32_t count = kernels_.slide(nodes, first_block, end_block);
+    renew(waiting.data(), count, u, v, step);
+    nodes.waiting = nullptr;
+    for (std::int32_t i = 0; i < count; ++i)
+      kernels_.slide(nodes, waiting[i].block, waiting[i].block + 1);
     gliding_.apply(first, last, u, v, step, contacts_.gliding);
   }
 
@@ -277,6 +334,7 @@ void RestrictedNodes<Real>::follow_bones(std::int32_t first, std::int32_t last, 
                                          const Real* const before[3], const ConstraintStep& step)
 {
   const auto nodes = range(rigid_, first, last);
+  const auto dt = static_cast<Real>(step.dt);
   for (auto r = nodes.first; r != nodes.second; ++r)
   {
     if (r->bone < 0)
@@ -285,10 +343,10 @@ void RestrictedNodes<Real>::follow_bones(std::int32_t first, std::int32_t last, 
         u[axis][r->node] = v[axis][r->node] = 0;
       continue;
     }
-    const Point p = rest_point(model_, r->node), moved = pose_of(step.bone[r->bone]).outwards(p) - p;
+    const Point p = rigid_rest_[r - rigid_.begin()], moved = pose_of(step.bone[r->bone]).outwards(p) - p;
     const double to[3] = { moved.x, moved.y, moved.z };
     for (int axis = 0; axis < 3; ++axis)
-      physics::move_to(to[axis], before[axis][r->node], static_cast<Real>(step.dt), u[axis][r->node], v[axis][r->node]);
+      physics::move_to(to[axis], before[axis][r->node], dt, u[axis][r->node], v[axis][r->node]);
   }
 }
 

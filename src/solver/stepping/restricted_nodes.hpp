@@ -41,8 +41,8 @@ public:
     std::vector<Carrier> carriers;
   };
 
-  /// `kernel` may also read the nodes of a plane that lie between sliding nodes, and write them back unchanged.
-  explicit RestrictedNodes(const Model& model, SlideKernel<Real> kernel = slide_plainly<Real>);
+  /// The kernels may also read the nodes of a plane that lie between sliding nodes, and write them back unchanged.
+  explicit RestrictedNodes(const Model& model, const SlideKernels<Real>& kernels = plain_slide_kernels<Real>());
 
   void reset() override;
   void constrain(const NodeShare& share, Real* const u[3], Real* const v[3], const Real* const before[3],
@@ -73,10 +73,12 @@ private:
     std::int32_t bone;     // -1: the surface stands still
     std::int32_t carried;  // index into Contacts::carried, or -1
   };
+  /// A node that needs a new tangent plane.
   struct Renewal
   {
-    RestrictedNodes* nodes;
-    const ConstraintStep* step;
+    std::int32_t block;
+    int lane;
+    physics::Vec3<double> place;  ///< in the surface's frame [m]
   };
   void make_blocks(const std::vector<SlidingNode>& nodes);
   void follow_paths(std::int32_t first, std::int32_t last, Real* const u[3], Real* const v[3],
@@ -84,12 +86,16 @@ private:
   void follow_bones(std::int32_t first, std::int32_t last, Real* const u[3], Real* const v[3],
                     const Real* const before[3], const ConstraintStep& step);
   void carry(Carrier& carrier, const Real* const u[3], const ConstraintStep& step);
-  static void renew(void* renewal, std::int32_t block, int lane, const Real u[3], Real v[3]);
+  void renew(const WaitingBlock* waiting, std::int32_t count, Real* const u[3], Real* const v[3],
+             const ConstraintStep& step);
+  void take(const Renewal& renewal, const physics::LevelPlane<double>& plane, Real* const u[3], Real* const v[3],
+            const ConstraintStep& step);
 
   const Model& model_;
-  SlideKernel<Real> kernel_;
-  std::vector<physics::DistanceField> fields_;  // of the model's surfaces
-  std::vector<RigidNode> rigid_;                // all lists are sorted by node
+  SlideKernels<Real> kernels_;
+  std::vector<physics::DistanceField> fields_;     // of the model's surfaces
+  std::vector<RigidNode> rigid_;                   // all lists are sorted by node
+  std::vector<physics::Vec3<double>> rigid_rest_;  // their positions at rest
   std::vector<PrescribedNode> prescribed_;
   GlidingNodes<Real> gliding_;
   std::vector<Sliding> sliding_;

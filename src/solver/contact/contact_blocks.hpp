@@ -1,0 +1,103 @@
+#pragma once
+
+#include "frontalis/model/model.hpp"
+#include "solver/stepping/array_list.hpp"
+#include "solver/cpu/point_kernel.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+namespace frontalis
+{
+
+/// Points of contact in blocks, for a kernel that finds which of them are away from their bodies. Without a kernel
+/// there are no blocks.
+template <class Real>
+class ContactBlocks
+{
+public:
+  using Vector = physics::Vec3<double>;
+  using Block = PointBlock<Real>;
+
+  explicit ContactBlocks(PointKernel<Real> kernel) : kernel_(kernel) {}
+
+  bool present() const { return kernel_ != nullptr; }
+  /// `points`: any type with the members voxel, body, coordinates and rest.
+  template <class Point>
+  void make(const Model& model, const std::vector<Point>& points)
+  {
+    constexpr std::size_t width = Block::width;
+    blocks_.resize(present() ? (points.size() + width - 1) / width : 0);
+    for (std::size_t p = 0; p < width * blocks_.size(); ++p)
+    {
+      const std::size_t lane = p % width;
+      const Point& point = points[p < points.size() ? p : p - lane];
+      Block& block = blocks_[p / width];
+      for (std::size_t two = 0; two < 4; ++two)
+        block.node[two][lane] = model.voxel_nodes[point.voxel][2 * two];
+      const double rest[3] = { point.rest.x, point.rest.y, point.rest.z };
+      for (std::size_t axis = 0; axis < 3; ++axis)
+      {
+        block.coordinates[axis][lane] = Real(point.coordinates[axis]);
+        block.rest[axis][lane] = static_cast<Real>(rest[axis]);
+        block.cell[axis][lane] = std::numeric_limits<Real>::quiet_NaN();
+      }
+      block.body[lane] = static_cast<Real>(point.body);
+      block.first_body = lane == 0 ? point.body : std::min(block.first_body, point.body);
+      block.last_body = lane == 0 ? point.body : std::max(block.last_body, point.body);
+    }
+  }
+
+  static PosedBody<Real> posed(const RigidTransform& pose, const physics::DistanceField& field)
+  {
+    PosedBody<Real> body{};
+    std::copy(pose.rotation.begin(), pose.rotation.end(), body.rotation);
+    std::copy(pose.translation.begin(), pose.translation.end(), body.translation);
+    std::copy(field.origin, field.origin + 3, body.origin);
+    body.inverse_spacing = static_cast<Real>(1 / field.spacing);
+    body.field = &field;
+    return body;
+  }
+
+  /// Finds the distances of the points from `first`, a multiple of Block::width, up to `last`. `distance` has room for
+  /// whole blocks.
+  void find(std::size_t first, std::size_t last, const Real* const u[3], const std::vector<PosedBody<Real>>& bodies,
+            Real* distance)
+  {
+    for (std::size_t p = first; p < last; p += Block::width)
+      kernel_(blocks_[p / Block::width], u, bodies.data(), distance + (p - first));
+  }
+
+  /// Finds the field of point p's body at x, in the frame of the body. Returns false where no samples are stored. The
+  /// block nearly always has the samples already, and in the cache.
+  bool sample(const physics::DistanceField& field, std::size_t p, const Vector& x,
+              physics::FieldValue<double>& value) const
+  {
+    physics::FieldPoint<double> point = physics::field_point(field, x);
+    if (blocks_.empty() || field.radius > 0)
+      return physics::sample(field, point, value);
+    const Block& block = blocks_[p / Block::width];
+    const std::size_t lane = p % Block::width;
+    const double inverse_spacing = 1 / field.spacing;
+    const Vector place = physics::enter_cell(inverse_spacing, point.offset, point.cell);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (block.cell[axis][lane] != static_cast<Real>(point.cell[axis]))
+        return physics::sample(field, physics::field_point(field, x), value);
+    physics::FieldSamples samples;
+    for (std::size_t n = 0; n < 27; ++n)
+      samples.value[n] = static_cast<float>(block.samples[n][lane]);
+    if (samples.value[0] == Block::none)
+      return false;
+    value = physics::spline(samples, inverse_spacing, place);
+    return true;
+  }
+
+  void list_arrays(ArrayList& list) const { list.add(Effect::contact, "points", blocks_); }
+
+private:
+  PointKernel<Real> kernel_;
+  std::vector<Block> blocks_;
+};
+
+}  // namespace frontalis

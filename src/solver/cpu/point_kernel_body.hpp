@@ -1,0 +1,106 @@
+#pragma once
+
+#include "frontalis/physics/trilinear.hpp"
+#include "solver/cpu/record_lanes.hpp"
+#include "solver/cpu/point_kernel.hpp"
+
+#include <cmath>
+
+namespace frontalis
+{
+
+// The architecture is part of every type, so that code for different instruction sets shares no template instantiation.
+template <class Architecture>
+struct PointKernelBody
+{
+  using Lanes = RecordLanes<Architecture>;
+  using Batch = typename Lanes::Batch;
+  using Vector = typename Lanes::Vector;
+  using Block = PointBlock<float>;
+  using Body = PosedBody<float>;
+  static_assert(Block::width % Lanes::count == 0, "a block is a whole number of batches");
+
+  static FRONTALIS_LAW Vector place(const Block& b, const float* const u[3], int lane)
+  {
+    Batch weight[8];
+    physics::trilinear_weights(Lanes::load(b.coordinates[0] + lane), Lanes::load(b.coordinates[1] + lane),
+                               Lanes::load(b.coordinates[2] + lane), weight);
+    Vector p{ Lanes::load(b.rest[0] + lane), Lanes::load(b.rest[1] + lane), Lanes::load(b.rest[2] + lane) };
+    for (int two = 0; two < 4; ++two)
+    {
+      Vector low, high;
+      Lanes::gather_two(u[0], b.node[two] + lane, low.x, high.x);
+      Lanes::gather_two(u[1], b.node[two] + lane, low.y, high.y);
+      Lanes::gather_two(u[2], b.node[two] + lane, low.z, high.z);
+      p = p + weight[2 * two] * low + weight[2 * two + 1] * high;
+    }
+    return p;
+  }
+
+  // Position in the body's frame, relative to the origin of the body's field [spacings of its samples].
+  static FRONTALIS_LAW Vector inwards(const Body& body, const Vector& place)
+  {
+    const float* const r = body.rotation;
+    const Vector p = place - Vector{ body.translation[0], body.translation[1], body.translation[2] };
+    const auto along = [&](int axis)
+    { return body.inverse_spacing * (r[axis] * p.x + r[axis + 3] * p.y + r[axis + 6] * p.z - body.origin[axis]); };
+    return { along(0), along(1), along(2) };
+  }
+
+  // Copies the samples of a cell into the block.
+  static void enter(Block& b, int lane, const Body& body, const float (&cell)[3])
+  {
+    std::int32_t whole[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      b.cell[axis][lane] = cell[axis];
+      whole[axis] = std::abs(cell[axis]) < 1e9f ? static_cast<std::int32_t>(cell[axis]) : -1000000000;
+    }
+    const float* const first = body.field->radius > 0 ? nullptr : body.field->around(whole);
+    for (int n = 0; n < 27; ++n)
+      b.samples[n][lane] = first == nullptr ? Block::none : physics::gather_one(first, n);
+  }
+
+  static FRONTALIS_LAW Batch distance(Block& b, int lane, const Vector& x, const Body* bodies)
+  {
+    const Batch half(0.5f);
+    const Vector cell{ xsimd::floor(x.x + half), xsimd::floor(x.y + half), xsimd::floor(x.z + half) };
+    const auto kept = cell.x == Lanes::load(b.cell[0] + lane) && cell.y == Lanes::load(b.cell[1] + lane) &&
+                      cell.z == Lanes::load(b.cell[2] + lane);
+    if (!xsimd::all(kept))
+    {
+      alignas(64) float at[3][Lanes::count];
+      Lanes::store(cell.x, at[0]);
+      Lanes::store(cell.y, at[1]);
+      Lanes::store(cell.z, at[2]);
+      for (int l = 0; l < Lanes::count; ++l)
+        if (at[0][l] != b.cell[0][lane + l] || at[1][l] != b.cell[1][lane + l] || at[2][l] != b.cell[2][lane + l])
+          enter(b, lane + l, bodies[static_cast<int>(b.body[lane + l])], { at[0][l], at[1][l], at[2][l] });
+    }
+    struct
+    {
+      Batch value[27];
+    } samples;
+    for (int n = 0; n < 27; ++n)
+      samples.value[n] = Lanes::load(b.samples[n] + lane);
+    return physics::spline(samples, Batch(1.0f), x - cell).value;
+  }
+
+  static void run(Block& b, const float* const u[3], const Body* bodies, float* result)
+  {
+    for (int lane = 0; lane < Block::width; lane += Lanes::count)
+    {
+      const Vector p = place(b, u, lane);
+      Vector x = inwards(bodies[b.first_body], p);
+      for (auto body = b.first_body + 1; body <= b.last_body; ++body)
+      {
+        const auto same = Lanes::load(b.body + lane) == Batch(static_cast<float>(body));
+        const Vector other = inwards(bodies[body], p);
+        x = { xsimd::select(same, other.x, x.x), xsimd::select(same, other.y, x.y), xsimd::select(same, other.z, x.z) };
+      }
+      Lanes::store(distance(b, lane, x, bodies), result + lane);
+    }
+  }
+};
+
+}  // namespace frontalis
