@@ -1,5 +1,6 @@
 #pragma once
 
+#include "cuda/backend/device_attachment.hpp"
 #include "cuda/backend/device_contacts.hpp"
 #include "cuda/backend/device_part.hpp"
 #include "cuda/backend/device_surface.hpp"
@@ -79,6 +80,7 @@ public:
   /// Model nodes that never move.
   const std::vector<std::uint32_t>& still_nodes() const { return still_nodes_; }
   const DeviceContacts& contacts() const { return contacts_; }
+  const DeviceAttachment& attachment() const { return attachment_; }
   /// Contact and shells, if the model has them.
   const std::vector<std::unique_ptr<DevicePart>>& parts() const { return parts_; }
   std::vector<DevicePart*> running_parts() const;
@@ -131,7 +133,7 @@ private:
   double filled_ = 1;
   DeviceArray<StripSlot> slots_;
   DeviceArray<float> mobility_;
-  DeviceArray<float4> palette_, stabilisation_;
+  DeviceArray<float4> palette_, stabilisation_, centres_, corner_stiffness_;
   DeviceArray<std::uint32_t> law_begin_;
   DeviceArray<LawEntry> laws_;
   DeviceArray<AddedVoxel> added_voxels_;
@@ -144,6 +146,7 @@ private:
   DeviceLoads loads_;
   DeviceViscosity viscosity_;
   DeviceContacts contacts_;
+  DeviceAttachment attachment_;
   std::vector<std::unique_ptr<DevicePart>> parts_;
 };
 

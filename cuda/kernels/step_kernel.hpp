@@ -127,6 +127,8 @@ struct StepArguments : physics::Kick<float>
   // stiffness [N/m], and the bound of the largest eigenvalue of the stiffness at rest [N/m]. Entry 0 has no stiffness.
   const float4* palette;
   const float4* stabilisation;     ///< bending, coupling, torsion, warping [N m]; null: scalar hourglass control
+  const float4* centres;           ///< physics::TissueCentre of each palette entry; null if all voxels are whole
+  const float4* corner_stiffness;  ///< two per palette entry: Discretisation::corner_stiffness; null with `centres`
   const std::uint32_t* law_begin;  ///< first law other than neo-Hookean of each palette entry; null if there are none
   const LawEntry* laws;
   // In strips, a kernel before each step may compute the stress of fibres and of laws other than neo-Hookean. In the
@@ -259,7 +261,8 @@ enum class Effects : std::uint16_t
   contact = 64,         ///< contact with bodies, in patches; always set together with all effects of nodes
   shell = 128,          ///< layers that are shells, in patches; always set together with contact
   added = 256,          ///< in strips, instead of fibres: AddedStress
-  touch = 512           ///< contact of tissue with itself, in patches; always set together with all effects of nodes
+  touch = 512,          ///< contact of tissue with itself, in patches; always set together with all effects of nodes
+  cut = 1024            ///< voxels that are partly filled, in strips
 };
 constexpr int voxel_sets = 8;  ///< number of sets of voxel effects, which are the first three bits
 constexpr Effects operator|(Effects a, Effects b) { return static_cast<Effects>(int(a) | int(b)); }
@@ -307,7 +310,7 @@ struct StepLaunch
 /// neo-Hookean elasticity leave registers for two rows only.
 constexpr int strip_rows(Effects effects)
 {
-  return voxel_part(effects) == Effects::none && (effects & Effects::added) == Effects::none ? 3 : 2;
+  return voxel_part(effects) == Effects::none && (effects & (Effects::added | Effects::cut)) == Effects::none ? 3 : 2;
 }
 constexpr int strip_blocks(Effects effects)
 {
