@@ -99,8 +99,6 @@ void CudaSolver::step(StepArguments& g, int begin, int end)
   g.first = present_;
   g.steps_before = steps_before_;
   require(launch_steps(g, launch_, stream_), "launching steps");
-  if (!g.forces_only)
-    device_.attachment().follow(g, stream_);
   steps_before_ += static_cast<std::uint32_t>(end - begin);
   present_ = (present_ + end - begin) & 1;
 }

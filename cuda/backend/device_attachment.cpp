@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <tuple>
 
 namespace frontalis
@@ -23,7 +24,7 @@ void put(const physics::Vec3<double>& from, float (&to)[3])
 }  // namespace
 
 AttachedTables::AttachedTables(const Model& model, const std::vector<double>& mass,
-                               const std::vector<std::uint32_t>& device_node)
+                               const std::vector<std::uint32_t>& device_node, const VoxelPatches* patches)
 {
   const std::vector<AttachedNode> nodes = nodes_by_master(model);
   const std::vector<std::array<bool, 3>> fixed = prescribed_axes(model);
@@ -63,15 +64,23 @@ AttachedTables::AttachedTables(const Model& model, const std::vector<double>& ma
     group.last = static_cast<std::int32_t>(ties.size());
     groups.push_back(group);
   }
+  const auto patch_of = [&](const AttachedGroup& group)
+  { return patches != nullptr ? patches->patch_of(group.master) : std::size_t{ 0 }; };
   // The threads of a warp do the same, and read nodes that are close to each other.
   const auto key = [&](const AttachedGroup& group)
   {
     const bool slides = std::any_of(ties.begin() + group.first, ties.begin() + group.last,
                                     [](const AttachedTie& tie) { return tie.plane >= 0; });
-    return std::make_tuple(slides, group.master);
+    return std::make_tuple(patch_of(group), slides, group.master);
   };
   std::sort(groups.begin(), groups.end(),
             [&](const AttachedGroup& a, const AttachedGroup& b) { return key(a) < key(b); });
+  if (patches == nullptr)
+    return;
+  patch_groups.assign(patches->patches.size() + 1, 0);
+  for (const AttachedGroup& group : groups)
+    ++patch_groups[patch_of(group) + 1];
+  std::partial_sum(patch_groups.begin(), patch_groups.end(), patch_groups.begin());
 }
 
 std::int32_t AttachedTables::add_place(const Model& model, std::int32_t node, std::int32_t surface)
@@ -86,29 +95,32 @@ std::int32_t AttachedTables::add_place(const Model& model, std::int32_t node, st
 }
 
 DeviceAttachment::DeviceAttachment(const Model& model, const std::vector<double>& mass,
-                                   const std::vector<std::uint32_t>& device_node)
-    : DeviceAttachment(AttachedTables(model, mass, device_node))
+                                   const std::vector<std::uint32_t>& device_node, const VoxelPatches* patches)
+    : DeviceAttachment(AttachedTables(model, mass, device_node, patches))
 {
 }
 
 DeviceAttachment::DeviceAttachment(const AttachedTables& tables)
-    : groups_(tables.groups), ties_(tables.ties), places_(tables.places), planes_(tables.places.size())
+    : groups_(tables.groups),
+      ties_(tables.ties),
+      places_(tables.places),
+      planes_(tables.places.size()),
+      patch_groups_(tables.patch_groups)
 {
   reset();
 }
 
-void DeviceAttachment::follow(const StepArguments& g, cudaStream_t stream) const
+void DeviceAttachment::describe(StepArguments& g) const
 {
-  if (empty())
-    return;
-  const AttachedArguments attached{ groups_.data(), static_cast<std::uint32_t>(groups_.size()), ties_.data(),
-                                    places_.data(), planes_.data() };
-  require(launch_attached(g, attached, stream), "moving attached nodes");
+  g.attached = { groups_.data(), static_cast<std::uint32_t>(groups_.size()),
+                 ties_.data(),   places_.data(),
+                 planes_.data(), patch_groups_.data() };
 }
 
 void DeviceAttachment::list_arrays(ArrayList& list)
 {
-  list.add(Effect::attachment, "attached nodes", groups_.bytes() + ties_.bytes() + places_.bytes());
+  list.add(Effect::attachment, "attached nodes",
+           groups_.bytes() + ties_.bytes() + places_.bytes() + patch_groups_.bytes());
   list_state(list, Effect::attachment, "tangent planes", planes_);
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "cuda/backend/device_memory.hpp"
-#include "cuda/kernels/attachment_arguments.hpp"
+#include "cuda/kernels/step_kernel.hpp"
 #include "solver/stepping/attached_nodes.hpp"
 
 #include <vector>
@@ -11,33 +11,34 @@ namespace frontalis
 namespace cuda
 {
 
-/// Whether nodes of the model follow others, because they are attached or joined.
-inline bool has_followers(const Model& model) { return !model.attached.empty() || !model.joints.empty(); }
-
-/// The groups of a model in the form that the device needs; see AttachedArguments. Groups whose nodes are all held come
-/// first, and within both kinds the order is that of the masters' device nodes.
+/// The groups of a model in the form that the device needs; see AttachedArguments. The groups of a patch are
+/// successive. Of them, or of all groups in strips, those whose nodes are all held come first, and both kinds are in
+/// the order of the masters' device nodes.
 struct AttachedTables
 {
-  AttachedTables(const Model& model, const std::vector<double>& mass, const std::vector<std::uint32_t>& device_node);
+  /// `patches`: null in strips.
+  AttachedTables(const Model& model, const std::vector<double>& mass, const std::vector<std::uint32_t>& device_node,
+                 const VoxelPatches* patches);
 
   std::vector<AttachedGroup> groups;
   std::vector<AttachedTie> ties;
   std::vector<AttachedPlace> places;
+  std::vector<std::uint32_t> patch_groups;
 
 private:
   std::int32_t add_place(const Model& model, std::int32_t node, std::int32_t surface);
 };
 
-/// Attached nodes and joints in device memory, and the kernel that moves them with their masters after each step. It is
-/// what AttachedNodes is on host backends.
+/// Attached nodes and joints in device memory. It is what AttachedNodes is on host backends.
 class DeviceAttachment : public EffectPart
 {
 public:
-  DeviceAttachment(const Model& model, const std::vector<double>& mass, const std::vector<std::uint32_t>& device_node);
+  DeviceAttachment(const Model& model, const std::vector<double>& mass, const std::vector<std::uint32_t>& device_node,
+                   const VoxelPatches* patches);
 
   bool empty() const { return groups_.size() == 0; }
-  /// Applies the constraints after the only step of a launch with the arguments `g`.
-  void follow(const StepArguments& g, cudaStream_t stream) const;
+  /// Sets the members of `g` that describe groups.
+  void describe(StepArguments& g) const;
   void list_arrays(ArrayList& list) override;
   void run(EffectSet) override {}
   void reset() override { planes_.clear(); }
@@ -49,6 +50,7 @@ private:
   DeviceArray<AttachedTie> ties_;
   DeviceArray<AttachedPlace> places_;
   DeviceArray<physics::KeptLevel<float>> planes_;
+  DeviceArray<std::uint32_t> patch_groups_;
 };
 
 }  // namespace cuda

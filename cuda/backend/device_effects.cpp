@@ -135,6 +135,8 @@ StepLaunch DeviceModel::launch_with_parts() const
 void DeviceModel::choose_kernel()
 {
   launch_.effects = effects_;
+  if (launch_.patches && (!attachment_.empty() || (effects_ & Effects::cut) == Effects::cut))
+    launch_.effects = launch_.effects | of_nodes | Effects::cut | Effects::groups;
   for (const DevicePart* const part : running_parts())
     if (launch_.patches)
       launch_.effects = launch_.effects | part->effects();

@@ -102,7 +102,7 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
                  discretisation.viscous_terms > 0 ? cut.voxel_at() : std::vector<std::uint32_t>(),
                  cut.patches != nullptr),
       contacts_(model, device_node_),
-      attachment_(model, discretisation.node_mass, device_node_)
+      attachment_(model, discretisation.node_mass, device_node_, cut.patches.get())
 {
   const std::vector<std::uint32_t> added = added_voxels(model, discretisation, cut);
   if (!added.empty())
@@ -169,6 +169,7 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
   g.selective_reduced = discretisation.selective_reduced;
   viscosity_.describe(g);
   contacts_.describe(g);
+  attachment_.describe(g);
   g.prescribed = prescribed_.data();
   g.rigid = rigid_.data();
   g.bones = static_cast<std::int32_t>(model.bones.size());

@@ -80,7 +80,6 @@ public:
   /// Model nodes that never move.
   const std::vector<std::uint32_t>& still_nodes() const { return still_nodes_; }
   const DeviceContacts& contacts() const { return contacts_; }
-  const DeviceAttachment& attachment() const { return attachment_; }
   /// Contact and shells, if the model has them.
   const std::vector<std::unique_ptr<DevicePart>>& parts() const { return parts_; }
   std::vector<DevicePart*> running_parts() const;

@@ -64,11 +64,8 @@ CutChoice choose_cut(const Model& model, Effects effects)
   const int processors = multiprocessors();
   CutChoice cut;
   cut.patch_bytes = bytes_for_patches();
-  // Groups of attached nodes and joints are moved by a kernel after each step, so that patches would not be faster.
-  // Cut voxels are computed in strips only.
-  if (!has_followers(model) && (effects & Effects::cut) == Effects::none)
-    cut.patches = { processors, from_environment("FRONTALIS_CUDA_PATCHES",
-                                                 expected_turns(model, processors, cut.patch_bytes), 0, most_turns) };
+  cut.patches = { processors, from_environment("FRONTALIS_CUDA_PATCHES",
+                                               expected_turns(model, processors, cut.patch_bytes), 0, most_turns) };
   // All strips should run at the same time, because a few that start later would double the time.
   cut.most_strips = static_cast<std::size_t>(strip_blocks(effects)) * (step_block / 32) * processors;
   cut.strips.rows = strip_rows(effects);

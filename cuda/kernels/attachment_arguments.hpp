@@ -2,14 +2,10 @@
 
 #include "frontalis/physics/attachment.hpp"
 
-#include <cuda_runtime_api.h>
-
 #include <cstdint>
 
 namespace frontalis
 {
-
-struct StepArguments;
 
 /// A master and the range of the nodes that follow it.
 struct AttachedGroup
@@ -50,9 +46,8 @@ struct AttachedArguments
   const AttachedTie* ties;
   const AttachedPlace* places;        ///< one per plane
   physics::KeptLevel<float>* planes;  ///< found at displacements relative to the surface
+  /// first group of each patch, and the number of all groups; null in strips
+  const std::uint32_t* patch_groups;
 };
-
-/// Applies the constraints of all groups after the update of a step and its tasks. The groups have no nodes in common.
-cudaError_t launch_attached(const StepArguments& arguments, const AttachedArguments& attached, cudaStream_t stream);
 
 }  // namespace frontalis

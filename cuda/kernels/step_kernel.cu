@@ -92,7 +92,9 @@ cudaError_t launch_steps(const StepArguments& arguments, const StepLaunch& launc
   if (status == cudaSuccess)
     status = cudaGetLastError();
   const bool tasks = (launch.effects & Effects::tasks) == Effects::tasks && !arguments.forces_only;
-  return status == cudaSuccess && tasks ? launch_tasks(arguments, launch.effects, stream) : status;
+  if (status == cudaSuccess && tasks)
+    status = launch_tasks(arguments, launch.effects, stream);
+  return status == cudaSuccess && !arguments.forces_only ? launch_attached(arguments, stream) : status;
 }
 
 }  // namespace frontalis

@@ -14,7 +14,7 @@
 #include <random>
 #include <vector>
 
-#include "device_on_host.hpp"
+#include "warp_on_host.hpp"
 
 #include "cuda/kernels/attached_group.cuh"
 
@@ -91,7 +91,7 @@ RigidTransform pose(int step)
 struct Device
 {
   explicit Device(const Model& model, const std::vector<double>& mass)
-      : tables(model, mass, numbers(model.nodes.size())), planes(tables.places.size())
+      : tables(model, mass, numbers(model.nodes.size()), nullptr), planes(tables.places.size())
   {
     for (const ConstraintSurface& of : model.constraint_surfaces)
       fields.push_back(view(of.field));
@@ -114,10 +114,11 @@ struct Device
     std::vector<float4> words(motions.size() / 4);
     std::memcpy(words.data(), motions.data(), motions.size() * sizeof(float));
     g.bone_motions = words.data();
-    const AttachedArguments a{ tables.groups.data(), static_cast<std::uint32_t>(tables.groups.size()),
-                               tables.ties.data(), tables.places.data(), planes.data() };
-    for (std::uint32_t group = 0; group < a.count; ++group)
-      follow_master(g, a, group);
+    g.attached = { tables.groups.data(), static_cast<std::uint32_t>(tables.groups.size()),
+                   tables.ties.data(),   tables.places.data(),
+                   planes.data(),        nullptr };
+    for (std::uint32_t group = 0; group < g.attached.count; ++group)
+      follow_master<1>(g, group, 0, g.u[1], g.v);
   }
 
   static std::vector<std::uint32_t> numbers(std::size_t count)

@@ -34,7 +34,8 @@ public:
   }
 
   static int lane() { return current()->now_; }
-  static ThreadOnHost thread() { return { static_cast<std::uint32_t>(lane()) }; }
+  /// Without a warp there is one thread.
+  static ThreadOnHost thread() { return { current() == nullptr ? 0u : static_cast<std::uint32_t>(lane()) }; }
   /// Offers a value to other lanes, and returns that of the lane `from`.
   template <class T>
   static T exchange(T value, int from)
@@ -48,6 +49,22 @@ public:
     swapcontext(&own.context, &warp.main_);
     std::memcpy(&value, &warp.lane_[from].offered[turn], sizeof value);
     return value;
+  }
+
+  /// Waits for all lanes.
+  static void barrier()
+  {
+    WarpOnHost& warp = *current();
+    Lane& own = warp.lane_[warp.now_];
+    const int round = warp.round_;
+    if (++warp.arrived_ == lanes)
+    {
+      warp.arrived_ = 0;
+      ++warp.round_;
+    }
+    while (warp.round_ == round)
+      swapcontext(&own.context, &warp.main_);
+    own.turn = 0;
   }
 
 private:
@@ -85,6 +102,7 @@ private:
   ucontext_t main_{};
   std::array<Lane, lanes> lane_{};
   int now_ = 0;
+  int arrived_ = 0, round_ = 0;  // lanes at the present barrier, and number of barriers before
 };
 
 #define threadIdx WarpOnHost::thread()

@@ -188,6 +188,8 @@ struct AttachedNodes<Real>::MovedGroup
 
   std::int32_t first() const { return group.begin; }
   std::int32_t last() const { return group.end; }
+  std::int32_t stride() const { return 1; }
+  void join(physics::Balance<double>& /*balance*/) const {}
   double mass() const { return of.mass_[group.master]; }
   bool fixed(int axis) const { return group.fixed[axis]; }
   const Tie& at(std::int32_t tie) const { return of.ties_[tie]; }

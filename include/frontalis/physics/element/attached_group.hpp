@@ -14,11 +14,11 @@ namespace physics
 /// Changes the velocities of a group after the free update of a step, so that they are those which the constraints
 /// allow and which minimise the sum of mass times |v - v*|^2 over the group, where v* is a velocity before the change
 /// (Gauss's principle). Displacements follow. Group is a type of the backend:
-///   first(), last()               range of its ties, one per node that follows
-///   mass(), fixed(axis)           the master's mass [kg]; whether it has a prescribed path along an axis
-///   motion(), set_motion(m)       the master's PointMotion
-///   held(tie), ratio(tie), mass(tie), offset(tie)      offset: level_offset() of a sliding node [m]
-///   motion(tie), set_motion(tie, m)                    the node's PointMotion
+///   first(), last(), stride()     the ties of this thread, one per node that follows; several threads may share a
+///   group join(balance)                 adds the sums of the threads, so that each has that of the group mass(),
+///   fixed(axis)           the master's mass [kg]; whether it has a prescribed path along an axis motion(),
+///   set_motion(m)       the master's PointMotion held(tie), ratio(tie), mass(tie), offset(tie)      offset:
+///   level_offset() of a sliding node [m] motion(tie), set_motion(tie, m)                    the node's PointMotion
 ///   bone_at_node(tie), bone_at_master(tie)             PointMotion of a held node's bone at both rest positions
 ///   level_of_node(tie, u), level_of_master(tie, u)     MovingLevel at a displacement u; the gradient may be zero
 template <class Group, class T>
@@ -27,8 +27,7 @@ FRONTALIS_LAW void move_attached_group(Group& group, const T& dt)
   using N = Number<T>;
   const PointMotion<T> before = group.motion();
   Balance<T> balance;
-  balance.add(group.mass(), { T(0), T(0), T(0) });
-  for (auto tie = group.first(); tie < group.last(); ++tie)
+  for (auto tie = group.first(); tie < group.last(); tie += group.stride())
   {
     const T r = group.ratio(tie);
     const PointMotion<T> node = group.motion(tie);
@@ -45,13 +44,15 @@ FRONTALIS_LAW void move_attached_group(Group& group, const T& dt)
                   dot(own.gradient, node.v - own.surface_velocity) -
                       r * dot(masters.gradient, before.v - masters.surface_velocity));
   }
+  group.join(balance);
+  balance.add(group.mass(), { T(0), T(0), T(0) });
   for (int axis = 0; axis < 3; ++axis)
     if (group.fixed(axis))
       balance.fix(axis);
   const Vec3<T> change = balance.change(), shift = dt * change;
   const PointMotion<T> after{ before.u + shift, before.v + change };
   group.set_motion(after);
-  for (auto tie = group.first(); tie < group.last(); ++tie)
+  for (auto tie = group.first(); tie < group.last(); tie += group.stride())
   {
     const T r = group.ratio(tie);
     if (group.held(tie))
