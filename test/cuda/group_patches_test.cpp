@@ -51,7 +51,7 @@ constexpr double dt = 4e-6, edge = 1e-3;
 constexpr int steps = 150;
 constexpr Effects kernel_effects = static_cast<Effects>(int(of_nodes) | int(Effects::cut) | int(Effects::groups));
 
-// A block of cut voxels whose lowest nodes follow those above them, held at small x, else sliding on a slanted plane.
+// A block of cut voxels whose lowest nodes follow those above them, two each, held at small x, else sliding on a slope.
 // Its right half is parted from the lower voxels, but joined to them at its end.
 Model whole_model()
 {
@@ -90,8 +90,8 @@ Model whole_model()
       model.joints.push_back({ node, index_of(place) });
     if (at[2] > 0)
       continue;
-    const std::int32_t master = index_of({ { at[0], at[1], 1 } });
-    const bool slides = at[0] > 1;
+    const std::int32_t master = index_of({ { at[0] / 2 * 2, at[1], 1 } });
+    const bool slides = at[0] > 2;
     model.attached.push_back({ node, master,
                                slides ? std::clamp(level(rest[n]) / level(rest[master]), -1.0, 1.0) : -0.6, -1,
                                slides ? 0 : -1, -1 });
