@@ -246,10 +246,6 @@ std::unique_ptr<Solver> make_cuda_solver(std::shared_ptr<const Model> model, con
   if (model->muscles.size() > most_muscles)
     throw BackendUnavailable(
         fmt::format("backend cuda: {} muscles; allowed are {}", model->muscles.size(), most_muscles));
-  if (!model->attached.empty() || !model->tissue_centre.empty())
-    throw BackendUnavailable("backend cuda: the model has boundary: true, which is computed on the CPU alone so far");
-  if (!model->joints.empty())
-    throw BackendUnavailable("backend cuda: the model has parted gaps, which are computed on the CPU alone so far");
   return std::make_unique<TimeStepper>(std::move(model), settings,
                                        [&](const BackendInput& input)
                                        { return std::make_unique<cuda::CudaSolver>(input, remark); });

@@ -74,6 +74,7 @@ private:
     void operator()(FrequencySearch* search) const;
   };
   void prepare_search();
+  void prepare_followers(const std::vector<double>& root);
 
   const std::string remark_;  // appended to the description
   DeviceModel device_;

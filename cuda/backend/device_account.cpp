@@ -41,7 +41,7 @@ DeviceAccount::DeviceAccount(const Model& model, DeviceModel& device)
     const auto count = static_cast<std::uint32_t>(model.fibre_begin[e + 1]) - first;
     if (count == 0)
       continue;
-    FibreVoxel voxel{ {}, first, count };
+    FibreVoxel voxel{ {}, first, count, device.palette_of_voxel()[e] };
     for (int b = 0; b < 8; ++b)
       voxel.node[b] = device.device_node()[model.voxel_nodes[e][b]];
     voxels.push_back(voxel);

@@ -109,7 +109,7 @@ Effects DeviceModel::node_part(const std::vector<NodeTask>& tasks) const
 // strips.
 void DeviceModel::choose_effects(EffectSet running)
 {
-  Effects least = most_effects_ & Effects::general_element;
+  Effects least = most_effects_ & (Effects::general_element | Effects::cut);
   const bool laws = !launch_.patches && laws_.size() > 0;
   if (running.has(Effect::contraction) || running.has(Effect::fibre_stiffness) || laws)
     least = least | (most_effects_ & (Effects::fibres | Effects::added));
@@ -135,6 +135,8 @@ StepLaunch DeviceModel::launch_with_parts() const
 void DeviceModel::choose_kernel()
 {
   launch_.effects = effects_;
+  if (launch_.patches && (!attachment_.empty() || (effects_ & Effects::cut) == Effects::cut))
+    launch_.effects = launch_.effects | of_nodes | Effects::cut | Effects::groups;
   for (const DevicePart* const part : running_parts())
     if (launch_.patches)
       launch_.effects = launch_.effects | part->effects();
@@ -151,7 +153,7 @@ std::vector<DevicePart*> DeviceModel::running_parts() const
 
 std::vector<EffectPart*> DeviceModel::all_parts()
 {
-  std::vector<EffectPart*> all{ &loads_, &viscosity_, &contacts_ };
+  std::vector<EffectPart*> all{ &loads_, &viscosity_, &contacts_, &attachment_ };
   for (const auto& part : parts_)
     all.push_back(part.get());
   return all;
@@ -166,6 +168,7 @@ void DeviceModel::list_arrays(Effect of_fibres, ArrayList& list)
   add(Effect::elasticity, "inverse masses", mobility_);
   add(Effect::elasticity, "palette", palette_, stabilisation_, law_begin_, laws_);
   add(Effect::elasticity, "added stress", added_voxels_, added_stress_);
+  add(Effect::cut_voxels, "centroids of tissue", centres_, corner_stiffness_);
   add(of_fibres, "fibres", fibre_words_, fibre_muscle_, fibres_);
   add(Effect::rigid_nodes, "poses", rigid_);
   add(Effect::prescribed_displacement, "prescribed nodes", prescribed_);

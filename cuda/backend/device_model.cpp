@@ -79,6 +79,8 @@ Effects effects_of(const Model& model, const Discretisation& discretisation, boo
     effects = effects | Effects::general_element;
   if (discretisation.viscous_terms > 0)
     effects = effects | Effects::viscosity;
+  if (!discretisation.corner_stiffness.empty())
+    effects = effects | Effects::cut;
   if (!model.fibre_muscle.empty() || (discretisation.laws && in_strips))
     effects = effects | Effects::fibres;
   for (const SlidingNode& node : model.sliding)
@@ -99,19 +101,21 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
       viscosity_(model, discretisation, device_node_,
                  discretisation.viscous_terms > 0 ? cut.voxel_at() : std::vector<std::uint32_t>(),
                  cut.patches != nullptr),
-      contacts_(model, device_node_)
+      contacts_(model, device_node_),
+      attachment_(model, discretisation.node_mass, device_node_, cut.patches.get())
 {
   const std::vector<std::uint32_t> added = added_voxels(model, discretisation, cut);
   if (!added.empty())
     most_effects_ =
-        (most_effects_ & (Effects::viscosity | Effects::general_element | Effects::friction)) | Effects::added;
+        (most_effects_ & (Effects::viscosity | Effects::general_element | Effects::friction | Effects::cut)) |
+        Effects::added;
   palette_of_voxel_ = add_palette(model, discretisation, added);
   add_added_voxels(model, added);
   add_fibres(model, discretisation);
   std::vector<NodeTask> tasks = add_tasks(model);
-  // Nodes that never move have the inverse mass 0 in any case. If other nodes are held as well, the frequency bound
-  // needs inverse masses of its own, 0 for all held nodes.
-  if (discretisation.held.size() > still_nodes_.size())
+  // Nodes that never move have the inverse mass 0 in any case. If other nodes are held as well, or nodes are attached,
+  // the frequency bound needs inverse masses of its own.
+  if (discretisation.held.size() > still_nodes_.size() || !discretisation.bound_mass.empty())
   {
     const std::vector<float> of_node = mobility(discretisation);
     std::vector<float> of_device(nodes(), 0);
@@ -144,6 +148,8 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
   g.mobility = mobility_.data();
   g.palette = palette_.data();
   g.stabilisation = stabilisation_.data();
+  g.centres = centres_.data();
+  g.corner_stiffness = corner_stiffness_.data();
   g.law_begin = law_begin_.data();
   g.laws = laws_.data();
   g.added_voxels = added_voxels_.data();
@@ -163,6 +169,7 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
   g.selective_reduced = discretisation.selective_reduced;
   viscosity_.describe(g);
   contacts_.describe(g);
+  attachment_.describe(g);
   g.prescribed = prescribed_.data();
   g.rigid = rigid_.data();
   g.bones = static_cast<std::int32_t>(model.bones.size());
@@ -190,9 +197,11 @@ StepArguments DeviceModel::arguments(bool idle_parts) const
 std::vector<std::uint32_t> DeviceModel::add_palette(const Model& model, const Discretisation& d,
                                                     const std::vector<std::uint32_t>& added)
 {
-  const bool stabilised = d.assumed_strain;
+  const bool stabilised = d.assumed_strain, cut = !d.corner_stiffness.empty();
   std::vector<float4> entries(1, float4{ 0, 0, 0, 0 });
   std::vector<float4> more(stabilised ? 1 : 0, float4{ 0, 0, 0, 0 });
+  std::vector<float4> centres(cut ? 1 : 0, float4{ 0, 0, 0, 0 });
+  std::vector<float4> corners(cut ? 2 : 0, float4{ 0, 0, 0, 0 });
   std::vector<std::uint32_t> law_begin(2, 0);
   std::vector<LawEntry> laws;
   std::vector<std::uint32_t> entry_of(model.voxels.size());
@@ -218,6 +227,13 @@ std::vector<std::uint32_t> DeviceModel::add_palette(const Model& model, const Di
     if (stabilised)
       for (const double x : { form.bending, form.coupling, form.torsion, form.warping })
         entry.push_back(static_cast<float>(x));
+    if (cut)
+    {
+      for (const double x : { voxel.centre.x, voxel.centre.y, voxel.centre.z })
+        entry.push_back(static_cast<float>(x));
+      const auto& factors = d.corner_stiffness[e];
+      entry.insert(entry.end(), factors.begin(), factors.end());
+    }
     for (const LawPart& part : voxel.laws)
     {
       for (const double x : { static_cast<double>(part.law), part.weight * voxel.tissue_volume, part.per_tangent,
@@ -241,6 +257,14 @@ std::vector<std::uint32_t> DeviceModel::add_palette(const Model& model, const Di
           more.push_back(float4{ entry[4], entry[5], entry[6], entry[7] });
           at = 8;
         }
+        if (cut)
+        {
+          const float* const from = entry.data() + at;
+          centres.push_back(float4{ from[0], from[1], from[2], 0 });
+          corners.push_back(float4{ from[3], from[4], from[5], from[6] });
+          corners.push_back(float4{ from[7], from[8], from[9], from[10] });
+          at += 11;
+        }
         for (; at < entry.size(); at += 15)
         {
           LawEntry law{ static_cast<std::int32_t>(entry[at]), entry[at + 1], entry[at + 2], entry[at + 3], {} };
@@ -259,6 +283,8 @@ std::vector<std::uint32_t> DeviceModel::add_palette(const Model& model, const Di
   viscosity_.set_palette(entry_of);
   palette_ = DeviceArray<float4>(entries);
   stabilisation_ = DeviceArray<float4>(more);
+  centres_ = DeviceArray<float4>(centres);
+  corner_stiffness_ = DeviceArray<float4>(corners);
   if (!laws.empty())
   {
     law_begin_ = DeviceArray<std::uint32_t>(law_begin);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "cuda/backend/device_attachment.hpp"
 #include "cuda/backend/device_contacts.hpp"
 #include "cuda/backend/device_part.hpp"
 #include "cuda/backend/device_surface.hpp"
@@ -131,7 +132,7 @@ private:
   double filled_ = 1;
   DeviceArray<StripSlot> slots_;
   DeviceArray<float> mobility_;
-  DeviceArray<float4> palette_, stabilisation_;
+  DeviceArray<float4> palette_, stabilisation_, centres_, corner_stiffness_;
   DeviceArray<std::uint32_t> law_begin_;
   DeviceArray<LawEntry> laws_;
   DeviceArray<AddedVoxel> added_voxels_;
@@ -144,6 +145,7 @@ private:
   DeviceLoads loads_;
   DeviceViscosity viscosity_;
   DeviceContacts contacts_;
+  DeviceAttachment attachment_;
   std::vector<std::unique_ptr<DevicePart>> parts_;
 };
 

@@ -24,20 +24,45 @@ void CudaSolver::prepare_search()
 {
   search_.reset(new FrequencySearch(device_.nodes()));
   NodalVectors random = random_mode(model_->nodes.size());
-  for (const auto n : discretisation_.held)
-    random[n] = {};
+  const std::vector<double> root = roots_for_search(discretisation_);
   std::vector<float4> values(device_.nodes(), float4{ 0, 0, 0, 0 });
   std::vector<double2> size(lanczos_blocks, double2{ 0, 0 });
   for (std::size_t n = 0; n < random.size(); ++n)
   {
+    if (root[n] == 0)
+      random[n] = {};
     const auto& x = random[n];
     values[device_.device_node()[n]] = { static_cast<float>(x[0]), static_cast<float>(x[1]), static_cast<float>(x[2]),
                                          0 };
     for (const double c : x)
-      size[0] = { size[0].x + c * c, std::max(size[0].y, std::abs(c) / std::sqrt(discretisation_.node_mass[n])) };
+      size[0] = { size[0].x + c * c, std::max(size[0].y, std::abs(c) * root[n]) };
   }
   search_->start.upload(values.data(), values.size());
   search_->sizes.upload(size.data(), size.size());
+  if (!discretisation_.followers.empty())
+    prepare_followers(root);
+}
+
+// Lists the nodes that follow masters, and the mobilities of groups.
+void CudaSolver::prepare_followers(const std::vector<double>& root)
+{
+  std::vector<SearchFollower> followers;
+  for (const auto& node : discretisation_.followers)
+    followers.push_back(
+        { device_.device_node()[node.node], device_.device_node()[node.master], static_cast<float>(node.ratio) });
+  std::stable_sort(followers.begin(), followers.end(),
+                   [](const SearchFollower& a, const SearchFollower& b) { return a.master < b.master; });
+  std::vector<std::uint32_t> begin;
+  for (std::uint32_t f = 0; f < followers.size(); ++f)
+    if (f == 0 || followers[f].master != followers[f - 1].master)
+      begin.push_back(f);
+  begin.push_back(static_cast<std::uint32_t>(followers.size()));
+  std::vector<float> mobility(device_.nodes(), 0);
+  for (std::size_t n = 0; n < root.size(); ++n)
+    mobility[device_.device_node()[n]] = static_cast<float>(root[n] * root[n]);
+  search_->mobility = DeviceArray<float>(mobility);
+  search_->followers = DeviceArray<SearchFollower>(followers);
+  search_->follower_begin = DeviceArray<std::uint32_t>(begin);
 }
 
 std::optional<double> CudaSolver::highest_frequency_squared()
@@ -53,7 +78,10 @@ std::optional<double> CudaSolver::highest_frequency_squared()
             "starting a search");
   LanczosIteration g{};
   g.nodes = static_cast<std::uint32_t>(device_.nodes());
-  g.mobility = device_.arguments().mobility;
+  g.mobility = s.mobility.size() > 0 ? s.mobility.data() : device_.arguments().mobility;
+  g.followers = s.followers.data();
+  g.follower_begin = s.follower_begin.data();
+  g.masters = s.follower_begin.size() > 0 ? static_cast<std::uint32_t>(s.follower_begin.size()) - 1 : 0;
   g.u = u_[present_].data();
   g.present = s.present.data();
   g.forces = s.forces.data();

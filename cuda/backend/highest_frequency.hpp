@@ -15,6 +15,10 @@ struct CudaSolver::FrequencySearch
   DeviceArray<float4> start, now, before, moved, forces, present;
   DeviceArray<double2> sizes;  // per vector
   DeviceArray<double> along;   // per iteration
+  // empty if no node follows a master
+  DeviceArray<float> mobility;
+  DeviceArray<SearchFollower> followers;
+  DeviceArray<std::uint32_t> follower_begin;
 
   explicit FrequencySearch(std::size_t nodes)
       : start(nodes),
@@ -30,7 +34,11 @@ struct CudaSolver::FrequencySearch
       require(cudaMemset(field->data(), 0, field->bytes()), "clearing forces");
   }
 
-  std::size_t bytes() const { return 6 * start.bytes() + sizes.bytes() + along.bytes(); }
+  std::size_t bytes() const
+  {
+    return 6 * start.bytes() + sizes.bytes() + along.bytes() + mobility.bytes() + followers.bytes() +
+           follower_begin.bytes();
+  }
 };
 
 }  // namespace cuda

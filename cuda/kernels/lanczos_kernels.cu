@@ -7,6 +7,8 @@ namespace cuda
 
 constexpr int block = lanczos_blocks;  // so that each thread reads the sums of one block
 
+static std::uint32_t blocks_of_masters(const LanczosIteration& g) { return (g.masters + block - 1) / block; }
+
 __device__ __forceinline__ double2 joined(const double2& a, const double2& b) { return { a.x + b.x, fmax(a.y, b.y) }; }
 __device__ __forceinline__ double joined(double a, double b) { return a + b; }
 
@@ -41,6 +43,40 @@ __global__ void __launch_bounds__(block) displace(const __grid_constant__ Lanczo
     const float share = scale * root_of(g, n);
     g.moved[n] = make_float4(at.x + share * along.x, at.y + share * along.y, at.z + share * along.z, at.w);
   }
+}
+
+// One thread per master.
+__global__ void __launch_bounds__(block) move_followers(const __grid_constant__ LanczosIteration g)
+{
+  const std::uint32_t m = blockIdx.x * block + threadIdx.x;
+  if (m >= g.masters)
+    return;
+  for (std::uint32_t f = g.follower_begin[m]; f < g.follower_begin[m + 1]; ++f)
+  {
+    const SearchFollower follower = g.followers[f];
+    const float4 from = g.u[follower.master], to = g.moved[follower.master], at = g.u[follower.node];
+    g.moved[follower.node] =
+        make_float4(at.x + follower.ratio * (to.x - from.x), at.y + follower.ratio * (to.y - from.y),
+                    at.z + follower.ratio * (to.z - from.z), at.w);
+  }
+}
+
+__global__ void __launch_bounds__(block) add_forces_of_followers(const __grid_constant__ LanczosIteration g)
+{
+  const std::uint32_t m = blockIdx.x * block + threadIdx.x;
+  if (m >= g.masters)
+    return;
+  const std::uint32_t master = g.followers[g.follower_begin[m]].master;
+  float4 sum = g.forces[master];
+  for (std::uint32_t f = g.follower_begin[m]; f < g.follower_begin[m + 1]; ++f)
+  {
+    const SearchFollower follower = g.followers[f];
+    const float4 force = g.forces[follower.node], present = g.present[follower.node];
+    sum.x += follower.ratio * (force.x - present.x);
+    sum.y += follower.ratio * (force.y - present.y);
+    sum.z += follower.ratio * (force.z - present.z);
+  }
+  g.forces[master] = sum;
 }
 
 // Writes the image of `now` at unit length, without its part along the vector before.
@@ -92,11 +128,15 @@ __global__ void __launch_bounds__(block) orthogonalise(const __grid_constant__ L
 cudaError_t launch_displace(const LanczosIteration& iteration, cudaStream_t stream)
 {
   cuda::displace<<<lanczos_blocks, cuda::block, 0, stream>>>(iteration);
+  if (iteration.masters > 0)
+    cuda::move_followers<<<cuda::blocks_of_masters(iteration), cuda::block, 0, stream>>>(iteration);
   return cudaGetLastError();
 }
 
 cudaError_t launch_lanczos_product(const LanczosIteration& iteration, cudaStream_t stream)
 {
+  if (iteration.masters > 0)
+    cuda::add_forces_of_followers<<<cuda::blocks_of_masters(iteration), cuda::block, 0, stream>>>(iteration);
   cuda::multiply<<<lanczos_blocks, cuda::block, 0, stream>>>(iteration);
   cuda::orthogonalise<<<lanczos_blocks, cuda::block, 0, stream>>>(iteration);
   return cudaGetLastError();

@@ -1,5 +1,6 @@
 #include "cuda/kernels/monitor_kernel.hpp"
 
+#include "cuda/kernels/cut_voxel.cuh"
 #include "cuda/kernels/palette_voxel.cuh"
 #include "frontalis/physics/element/voxel_readings.hpp"
 
@@ -18,6 +19,8 @@ struct LookedVoxel : PaletteVoxel<double, Effects::general_element>
   __device__ __forceinline__ const double* scale() const { return grid_scale; }
 };
 
+// Cut: whether voxels may be partly filled.
+template <bool Cut>
 __device__ PlaneMonitor read_voxel(const StepArguments& g, const MonitorVoxels& voxels, std::uint32_t index,
                                    const float4* u)
 {
@@ -32,6 +35,13 @@ __device__ PlaneMonitor read_voxel(const StepArguments& g, const MonitorVoxels& 
   }
   for (auto& component : mode)
     physics::walsh_hadamard(component);
+  if (Cut)
+  {
+    const physics::TissueCentre<float> at = tissue_centre(g, voxel.palette);
+    const physics::TissueCentre<double> centre{ at.x, at.y, at.z };
+    for (auto& component : mode)
+      physics::to_tissue_centre(centre, component);
+  }
   const PaletteVoxel<double, Effects::general_element> palette = palette_voxel<double>(g, voxel.palette);
   const auto readings = physics::voxel_readings(LookedVoxel{ palette, voxels.scale }, mode);
   voxels.stiffness[index] = static_cast<float>(readings.stiffness);
@@ -39,6 +49,7 @@ __device__ PlaneMonitor read_voxel(const StepArguments& g, const MonitorVoxels& 
 }
 
 // Each block sums its part of the voxels and nodes in a fixed order.
+template <bool Cut>
 __global__ void __launch_bounds__(block)
     monitor(const __grid_constant__ StepArguments g, const __grid_constant__ MonitorVoxels voxels, const float4* u,
             PlaneMonitor* parts)
@@ -47,7 +58,7 @@ __global__ void __launch_bounds__(block)
   PlaneMonitor sum;
   const std::uint32_t first = blockIdx.x * block + threadIdx.x, stride = gridDim.x * block;
   for (std::uint32_t e = first; e < voxels.count; e += stride)
-    sum.add(read_voxel(g, voxels, e, u));
+    sum.add(read_voxel<Cut>(g, voxels, e, u));
   for (std::uint32_t n = first; n < voxels.nodes; n += stride)
   {
     const double inverse_mass = u[n].w, x = g.v[0][n], y = g.v[1][n], z = g.v[2][n];
@@ -66,10 +77,15 @@ __global__ void __launch_bounds__(block)
 
 // Adds the stiffness of all voxels to their nodes at one corner. A node is this corner of at most one voxel, so that
 // the sum over eight launches has a fixed order.
-__global__ void __launch_bounds__(block) add_to_corners(const __grid_constant__ MonitorVoxels voxels, int corner)
+template <bool Cut>
+__global__ void __launch_bounds__(block)
+    add_to_corners(const __grid_constant__ StepArguments g, const __grid_constant__ MonitorVoxels voxels, int corner)
 {
   for (std::uint32_t e = blockIdx.x * block + threadIdx.x; e < voxels.count; e += gridDim.x * block)
-    voxels.node_stiffness[voxels.voxels[e].node[corner]] += voxels.stiffness[e];
+  {
+    const float factor = Cut ? corner_factors(g, voxels.voxels[e].palette).at[corner] : 1.0f;
+    voxels.node_stiffness[voxels.voxels[e].node[corner]] += factor * voxels.stiffness[e];
+  }
 }
 
 // Finds the stiffest voxel at the node with the highest frequency bound.
@@ -105,10 +121,13 @@ __global__ void __launch_bounds__(block)
 cudaError_t launch_monitor(const StepArguments& arguments, const MonitorVoxels& voxels, const float4* u,
                            PlaneMonitor* parts, StiffestVoxel* stiffest, cudaStream_t stream)
 {
-  cuda::monitor<<<monitor_blocks, cuda::block, 0, stream>>>(arguments, voxels, u, parts);
+  const bool cut = arguments.centres != nullptr;
+  const auto monitor = cut ? cuda::monitor<true> : cuda::monitor<false>;
+  const auto add_to_corners = cut ? cuda::add_to_corners<true> : cuda::add_to_corners<false>;
+  monitor<<<monitor_blocks, cuda::block, 0, stream>>>(arguments, voxels, u, parts);
   cudaMemsetAsync(voxels.node_stiffness, 0, voxels.nodes * sizeof(float), stream);
   for (int corner = 0; corner < 8; ++corner)
-    cuda::add_to_corners<<<monitor_blocks, cuda::block, 0, stream>>>(voxels, corner);
+    add_to_corners<<<monitor_blocks, cuda::block, 0, stream>>>(arguments, voxels, corner);
   cuda::find_stiffest<<<monitor_blocks, cuda::block, 0, stream>>>(arguments, voxels, u, stiffest);
   return cudaGetLastError();
 }

@@ -47,18 +47,22 @@ __global__ void __launch_bounds__(step_block, strip_blocks(static_cast<Effects>(
 namespace
 {
 
-// Strips have kernels for all sets of viscosity and general elements, each without fibres, with fibres, and with added
-// stress.
-constexpr int strip_sets = 12;
+// Strips have kernels for all sets of viscosity, general elements and cut voxels, each without fibres, with fibres, and
+// with added stress.
+constexpr int whole_sets = 12, strip_sets = 2 * whole_sets;
 constexpr int index_of(Effects effects)
 {
   const bool fibres = (effects & Effects::fibres) != Effects::none, added = (effects & Effects::added) != Effects::none;
-  return int(effects & (Effects::viscosity | Effects::general_element)) / 2 * 3 + (added ? 2 : fibres ? 1 : 0);
+  const int whole = int(effects & (Effects::viscosity | Effects::general_element)) / 2 * 3 + (added    ? 2
+                                                                                              : fibres ? 1
+                                                                                                       : 0);
+  return whole + ((effects & Effects::cut) == Effects::none ? 0 : whole_sets);
 }
 constexpr Effects set_of(int index)
 {
   const Effects part[] = { Effects::none, Effects::fibres, Effects::added };
-  return static_cast<Effects>(index / 3 * 2) | part[index % 3];
+  const Effects whole = static_cast<Effects>(index % whole_sets / 3 * 2) | part[index % 3];
+  return index < whole_sets ? whole : whole | Effects::cut;
 }
 
 template <bool WithBound, int... I>
@@ -88,7 +92,9 @@ cudaError_t launch_steps(const StepArguments& arguments, const StepLaunch& launc
   if (status == cudaSuccess)
     status = cudaGetLastError();
   const bool tasks = (launch.effects & Effects::tasks) == Effects::tasks && !arguments.forces_only;
-  return status == cudaSuccess && tasks ? launch_tasks(arguments, launch.effects, stream) : status;
+  if (status == cudaSuccess && tasks)
+    status = launch_tasks(arguments, launch.effects, stream);
+  return status == cudaSuccess && !arguments.forces_only ? launch_attached(arguments, stream) : status;
 }
 
 }  // namespace frontalis

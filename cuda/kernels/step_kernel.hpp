@@ -2,6 +2,7 @@
 
 #include "frontalis/physics/distance_field.hpp"
 #include "frontalis/physics/element/node_motion.hpp"
+#include "cuda/kernels/attachment_arguments.hpp"
 #include "cuda/kernels/contact_arguments.hpp"
 #include "cuda/kernels/shell_arguments.hpp"
 #include "cuda/kernels/tissue_contact_arguments.hpp"
@@ -127,6 +128,8 @@ struct StepArguments : physics::Kick<float>
   // stiffness [N/m], and the bound of the largest eigenvalue of the stiffness at rest [N/m]. Entry 0 has no stiffness.
   const float4* palette;
   const float4* stabilisation;     ///< bending, coupling, torsion, warping [N m]; null: scalar hourglass control
+  const float4* centres;           ///< physics::TissueCentre of each palette entry; null if all voxels are whole
+  const float4* corner_stiffness;  ///< two per palette entry: Discretisation::corner_stiffness; null with `centres`
   const std::uint32_t* law_begin;  ///< first law other than neo-Hookean of each palette entry; null if there are none
   const LawEntry* laws;
   // In strips, a kernel before each step may compute the stress of fibres and of laws other than neo-Hookean. In the
@@ -203,6 +206,7 @@ struct StepArguments : physics::Kick<float>
   ContactArguments contact;    ///< contact with bodies
   ShellArguments shell;
   TissueContactArguments touch;  ///< contact of tissue with itself, in patches
+  AttachedArguments attached;
 };
 
 /// Threads per block of the strip kernel. Each warp processes one strip.
@@ -259,7 +263,9 @@ enum class Effects : std::uint16_t
   contact = 64,         ///< contact with bodies, in patches; always set together with all effects of nodes
   shell = 128,          ///< layers that are shells, in patches; always set together with contact
   added = 256,          ///< in strips, instead of fibres: AddedStress
-  touch = 512           ///< contact of tissue with itself, in patches; always set together with all effects of nodes
+  touch = 512,          ///< contact of tissue with itself, in patches; always set together with all effects of nodes
+  cut = 1024,           ///< voxels that are partly filled
+  groups = 2048         ///< attached nodes and joints, in patches; always set together with `cut` and effects of nodes
 };
 constexpr int voxel_sets = 8;  ///< number of sets of voxel effects, which are the first three bits
 constexpr Effects operator|(Effects a, Effects b) { return static_cast<Effects>(int(a) | int(b)); }
@@ -274,7 +280,8 @@ inline constexpr Effects of_nodes = Effects::sliding | Effects::tasks | Effects:
 template <Effects Set>
 inline constexpr Effects lawless_part = static_cast<Effects>(int(Set) & ~int(Effects::general_element));
 template <Effects Set>
-inline constexpr Effects plain_part = Set&(of_nodes | Effects::contact | Effects::shell | Effects::touch);
+inline constexpr Effects plain_part = Set&(of_nodes | Effects::contact | Effects::shell | Effects::touch |
+                                           Effects::cut | Effects::groups);
 constexpr Effects voxel_part(Effects set)
 {
   return set & (Effects::fibres | Effects::viscosity | Effects::general_element);
@@ -307,7 +314,7 @@ struct StepLaunch
 /// neo-Hookean elasticity leave registers for two rows only.
 constexpr int strip_rows(Effects effects)
 {
-  return voxel_part(effects) == Effects::none && (effects & Effects::added) == Effects::none ? 3 : 2;
+  return voxel_part(effects) == Effects::none && (effects & (Effects::added | Effects::cut)) == Effects::none ? 3 : 2;
 }
 constexpr int strip_blocks(Effects effects)
 {
@@ -334,6 +341,8 @@ cudaError_t launch_steps(const StepArguments& arguments, const StepLaunch& launc
 cudaError_t launch_patches(const StepArguments& arguments, const StepLaunch& launch, cudaStream_t stream);
 /// In strips: finds the stress of all added voxels before the step.
 cudaError_t launch_added_stress(const StepArguments& arguments, bool with_bound, cudaStream_t stream);
+/// In strips: applies the constraints of all groups after the tasks of a step. The groups have no nodes in common.
+cudaError_t launch_attached(const StepArguments& arguments, cudaStream_t stream);
 /// In strips: applies the tasks of all nodes after their update. `effects`: those of nodes.
 cudaError_t launch_tasks(const StepArguments& arguments, Effects effects, cudaStream_t stream);
 

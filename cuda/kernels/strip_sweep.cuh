@@ -1,5 +1,6 @@
 #pragma once
 
+#include "cuda/kernels/cut_voxel.cuh"
 #include "cuda/kernels/element_stress.cuh"
 #include "cuda/kernels/node_tasks.cuh"
 
@@ -129,7 +130,19 @@ __device__ __forceinline__ void voxel_forces(const StepArguments& g, const Eleme
     }
   }
   const StripVoxel<With> voxel{ element_voxel<With>(g, place, activation, 0), added };
-  element_forces(voxel, mode, with_bound, stiffness);
+  if constexpr (has<With, Effects::cut>)
+  {
+    const physics::TissueCentre<float> centre = tissue_centre(g, place.palette);
+#pragma unroll
+    for (int c = 0; c < 3; ++c)
+      physics::to_tissue_centre(centre, mode[c]);
+    element_forces(voxel, mode, with_bound, stiffness);
+#pragma unroll
+    for (int c = 0; c < 3; ++c)
+      physics::from_tissue_centre(centre, mode[c]);
+  }
+  else
+    element_forces(voxel, mode, with_bound, stiffness);
 #pragma unroll
   for (int c = 0; c < 3; ++c)
 #pragma unroll
@@ -196,6 +209,7 @@ __device__ __forceinline__ void sweep_strip(const StepArguments& g, const Strip&
   RowValues below[nodes];
   RowForces carried[Rows];
   float carried_stiffness[Rows] = {};
+  CornerBounds<Rows> corner_bounds{};
   uint2 here[nodes], above_slot[nodes];
 #pragma unroll
   for (int r = 0; r < nodes; ++r)
@@ -228,6 +242,7 @@ __device__ __forceinline__ void sweep_strip(const StepArguments& g, const Strip&
       further[r] = slot[r * 32];
     RowForces pending_below = no_forces(), pending_above = no_forces();
     float pending_stiffness = 0;
+    corner_bounds.begin_plane();
     RowValues above_a = transform_x(raw_a);
 #pragma unroll
     for (int r = 0; r <= Rows; ++r)
@@ -261,8 +276,18 @@ __device__ __forceinline__ void sweep_strip(const StepArguments& g, const Strip&
         voxel_forces<With>(g, place, activation, added, below[r], below[r + 1], above_a, above_b, with_bound, stiffness,
                            force);
       }
-      // A voxel adds the same stiffness to each of its nodes.
-      if (with_bound && r > 0)
+      if constexpr (has<With, Effects::cut>)
+      {
+        if (with_bound)
+        {
+          const float sum = corner_bounds.add(g, here[r].y, stiffness, r, left);
+          if (r > 0 && (here[r].x & StripSlot::updated) != 0)
+            frequency_bits =
+                max(frequency_bits, frequency_bits_of(g, here[r].x & StripSlot::node_mask, fetch.own.w, sum));
+        }
+      }
+      // A whole voxel adds the same stiffness to each of its nodes.
+      else if (with_bound && r > 0)
       {
         const float pair = pending_stiffness + stiffness, right = carried_stiffness[r - 1] + pair;
         const float sum = right + __shfl_sync(whole_warp, right, left);

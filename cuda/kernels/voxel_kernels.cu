@@ -1,3 +1,4 @@
+#include "cuda/kernels/cut_voxel.cuh"
 #include "cuda/kernels/element_stress.cuh"
 #include "frontalis/physics/ramp.hpp"
 #include "cuda/kernels/voxel_kernels.hpp"
@@ -9,8 +10,10 @@ namespace cuda
 
 constexpr int block = 128;
 
+// Cut: whether voxels may be partly filled.
+template <bool Cut>
 __device__ __forceinline__ physics::Kinematics<float> kinematics_of(const StepArguments& g, const float4* u,
-                                                                    const std::uint32_t* node)
+                                                                    const std::uint32_t* node, std::uint32_t palette)
 {
   float mode[3][8];
   for (int b = 0; b < 8; ++b)
@@ -22,6 +25,12 @@ __device__ __forceinline__ physics::Kinematics<float> kinematics_of(const StepAr
   }
   for (auto& component : mode)
     physics::walsh_hadamard(component);
+  if (Cut)
+  {
+    const physics::TissueCentre<float> centre = tissue_centre(g, palette);
+    for (auto& component : mode)
+      physics::to_tissue_centre(centre, component);
+  }
   return physics::kinematics(mode[0], mode[1], mode[2], g.scale);
 }
 
@@ -29,7 +38,7 @@ __device__ __forceinline__ physics::Kinematics<float> kinematics_of(const StepAr
 inline constexpr Effects added_effects = Effects::fibres | Effects::general_element;
 
 // Finds the stress of one added voxel per thread. WithBound: also finds what the laws add to its stiffness bound.
-template <bool WithBound>
+template <bool WithBound, bool Cut>
 __global__ void __launch_bounds__(block) find_added_stress(const __grid_constant__ StepArguments g)
 {
   __shared__ float2 activations[most_muscles];
@@ -43,7 +52,7 @@ __global__ void __launch_bounds__(block) find_added_stress(const __grid_constant
   place.palette = v + 1;
   if (g.fibres != nullptr && at.fibre_word != 0)
     fetch_fibre(g, at.fibre_word, place);
-  const auto k = kinematics_of(g, g.u[g.first], at.node);
+  const auto k = kinematics_of<Cut>(g, g.u[g.first], at.node, place.palette);
   const Activations activation = activations_at(g, g.step_begin, activations);
   const ElementVoxel<added_effects> voxel = element_voxel<added_effects>(g, place, activation, 0);
   physics::Matrix3<float> P{};
@@ -56,6 +65,7 @@ __global__ void __launch_bounds__(block) find_added_stress(const __grid_constant
                         WithBound ? physics::law_stiffening(voxel, k) : 0 };
 }
 
+template <bool Cut>
 __global__ void __launch_bounds__(block) relax(const __grid_constant__ StepArguments g, const ViscousVoxels viscous,
                                                const float4* u, const float4* u_before, float elapsed)
 {
@@ -64,10 +74,10 @@ __global__ void __launch_bounds__(block) relax(const __grid_constant__ StepArgum
     return;
   const ViscousVoxel voxel = viscous.voxels[v];
   const PaletteVoxel<float, Effects::general_element> at{ g, voxel.palette, v, __ldg(g.palette + voxel.palette) };
-  const auto k = kinematics_of(g, u, voxel.node);
+  const auto k = kinematics_of<Cut>(g, u, voxel.node, voxel.palette);
   if (viscous.account == nullptr)
     return physics::relax_voxel(at, elapsed, k, [](const auto&, const auto&) {});
-  const auto k_before = kinematics_of(g, u_before, voxel.node);
+  const auto k_before = kinematics_of<Cut>(g, u_before, voxel.node, voxel.palette);
   double change = 0, now = 0;
   physics::relax_voxel(at, elapsed, k,
                        [&](const auto& before, const auto& after)
@@ -79,6 +89,7 @@ __global__ void __launch_bounds__(block) relax(const __grid_constant__ StepArgum
   viscous.account[2 * static_cast<std::size_t>(v) + 1] = now;
 }
 
+template <bool Cut>
 __global__ void __launch_bounds__(block)
     fibre_work(const __grid_constant__ StepArguments g, const FibreVoxels fibres, const float4* u, int step, bool open)
 {
@@ -86,7 +97,7 @@ __global__ void __launch_bounds__(block)
   if (v >= fibres.count)
     return;
   const FibreVoxel voxel = fibres.voxels[v];
-  const auto k = kinematics_of(g, u, voxel.node);
+  const auto k = kinematics_of<Cut>(g, u, voxel.node, voxel.palette);
   const auto fraction = static_cast<float>((step + 1.0) / g.steps);
   double work = 0;
   for (std::uint32_t f = voxel.first; f < voxel.first + voxel.count; ++f)
@@ -154,7 +165,9 @@ int blocks(std::uint32_t count) { return static_cast<int>((count + block - 1) / 
 
 cudaError_t launch_added_stress(const StepArguments& arguments, bool with_bound, cudaStream_t stream)
 {
-  const auto kernel = with_bound ? cuda::find_added_stress<true> : cuda::find_added_stress<false>;
+  const auto kernel = arguments.centres == nullptr
+                          ? (with_bound ? cuda::find_added_stress<true, false> : cuda::find_added_stress<false, false>)
+                          : (with_bound ? cuda::find_added_stress<true, true> : cuda::find_added_stress<false, true>);
   kernel<<<cuda::blocks(arguments.added_count), cuda::block, 0, stream>>>(arguments);
   return cudaGetLastError();
 }
@@ -162,16 +175,18 @@ cudaError_t launch_added_stress(const StepArguments& arguments, bool with_bound,
 cudaError_t launch_relaxation(const StepArguments& arguments, const ViscousVoxels& viscous, const float4* u,
                               const float4* u_before, float elapsed, cudaStream_t stream)
 {
+  const auto kernel = arguments.centres == nullptr ? cuda::relax<false> : cuda::relax<true>;
   if (viscous.count > 0)
-    cuda::relax<<<cuda::blocks(viscous.count), cuda::block, 0, stream>>>(arguments, viscous, u, u_before, elapsed);
+    kernel<<<cuda::blocks(viscous.count), cuda::block, 0, stream>>>(arguments, viscous, u, u_before, elapsed);
   return cudaGetLastError();
 }
 
 cudaError_t launch_fibre_work(const StepArguments& arguments, const FibreVoxels& fibres, const float4* u, int step,
                               bool open, cudaStream_t stream)
 {
+  const auto kernel = arguments.centres == nullptr ? cuda::fibre_work<false> : cuda::fibre_work<true>;
   if (fibres.count > 0)
-    cuda::fibre_work<<<cuda::blocks(fibres.count), cuda::block, 0, stream>>>(arguments, fibres, u, step, open);
+    kernel<<<cuda::blocks(fibres.count), cuda::block, 0, stream>>>(arguments, fibres, u, step, open);
   return cudaGetLastError();
 }
 

@@ -24,6 +24,7 @@ struct FibreVoxel
 {
   std::uint32_t node[8];  ///< device nodes
   std::uint32_t first, count;
+  std::uint32_t palette;
 };
 
 struct FibreVoxels

@@ -3,6 +3,7 @@
 #include "frontalis/error.hpp"
 #include "frontalis/model/effects.hpp"
 #include "frontalis/physics/mutation.hpp"
+#include "solver/stepping/attached_nodes.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -16,8 +17,8 @@ namespace
 
 // Costs relative to a voxel without effects. They were measured on blocks in which all voxels or none have the effect.
 // The cost of nodes that slide on moving bones was chosen to minimise the wall time per step of the generated head,
-// when these nodes were still computed in double precision.
-constexpr float fibre_cost = 0.4f, viscous_cost = 0.45f, node_cost = 0.8f, glide_cost = 5;
+// when these nodes were still computed in double precision. That of nodes that follow a master is an estimate.
+constexpr float fibre_cost = 0.4f, viscous_cost = 0.45f, node_cost = 0.8f, glide_cost = 5, follower_cost = 2;
 
 std::int32_t fibres_of(const Model& model, std::size_t e) { return model.fibre_begin[e + 1] - model.fibre_begin[e]; }
 
@@ -35,6 +36,8 @@ std::vector<float> node_costs(const Model& model)
   std::vector<float> cost(model.nodes.size(), node_cost);
   for (const SlidingNode& node : model.sliding)
     cost[node.node] += model.constraint_surfaces[node.surface].bone >= 0 ? glide_cost : 0;
+  for (const auto& node : nodes_by_master(model))
+    cost[node.node] += follower_cost;
   return cost;
 }
 
@@ -46,6 +49,8 @@ public:
       : part_of(model.nodes.size()), model_(model), weight_(weight), order_(model.nodes.size())
   {
     std::iota(order_.begin(), order_.end(), 0u);
+    for (const auto& node : model.nodes)
+      place_.push_back(rest_place(model, node));
   }
 
   void cut(int parts)
@@ -75,7 +80,7 @@ private:
       double total = 0;
       for (std::size_t n = first; n < last; ++n)
       {
-        const std::int32_t at = model_.nodes[order_[n]][axis];
+        const std::int32_t at = place_[order_[n]][axis];
         sum_[at] += weight_[order_[n]];
         ++count_[at];
         total += weight_[order_[n]];
@@ -104,7 +109,7 @@ private:
     }
     const int low = parts / 2;
     const Plane plane = find(first, last, static_cast<double>(low) / parts);
-    const auto coordinate = [&](std::uint32_t n) { return model_.nodes[n][plane.axis]; };
+    const auto coordinate = [&](std::uint32_t n) { return place_[n][plane.axis]; };
     const auto begin = order_.begin() + static_cast<std::ptrdiff_t>(first),
                end = order_.begin() + static_cast<std::ptrdiff_t>(last);
     // The nodes of the plane stay in the model's order, so that a cut within the plane runs along a row.
@@ -121,6 +126,7 @@ private:
   const Model& model_;
   const std::vector<float>& weight_;
   std::vector<std::uint32_t> order_;
+  std::vector<std::array<std::int32_t, 3>> place_;  // of each node at rest
   std::vector<double> sum_;
   std::vector<std::size_t> count_;
   double missing_ = 0;
@@ -145,6 +151,7 @@ void each_part(const Model& model, const std::vector<std::uint32_t>& part_of, co
 std::vector<std::uint32_t> partition(const Model& model, const BoundWork& bound, int parts)
 {
   const std::vector<float> of_voxel = voxel_costs(model, bound), of_node = node_costs(model);
+  const auto followers = nodes_by_master(model);
   std::vector<float> weight = of_node;
   for (std::size_t e = 0; e < model.voxels.size(); ++e)
     for (const auto n : model.voxel_nodes[e])
@@ -155,6 +162,9 @@ std::vector<std::uint32_t> partition(const Model& model, const BoundWork& bound,
   {
     Bisection bisection(model, weight);
     bisection.cut(parts);
+    // A part has all nodes of a group, so that it needs no others to move them.
+    for (const auto& node : followers)
+      bisection.part_of[node.node] = bisection.part_of[node.master];
     std::vector<double> cost(parts, 0);
     for (std::size_t n = 0; n < of_node.size(); ++n)
       cost[bisection.part_of[n]] += of_node[n];
@@ -283,6 +293,13 @@ void VoxelPatches::number_nodes(std::size_t count, const std::vector<std::vector
     for (const auto n : nodes)
       device_node[n] = next++;
   }
+}
+
+std::size_t VoxelPatches::patch_of(std::uint32_t node) const
+{
+  const auto after = std::upper_bound(patches.begin(), patches.end(), node,
+                                      [](std::uint32_t n, const Patch& patch) { return n < patch.first_node; });
+  return static_cast<std::size_t>(after - patches.begin()) - 1;
 }
 
 std::uint32_t VoxelPatches::place_of(std::size_t index, std::uint32_t node) const

@@ -48,6 +48,8 @@ struct VoxelPatches
 {
   VoxelPatches(const Model& model, const PatchSettings& settings, const BoundWork& bound = {});
 
+  /// Index of the patch that owns a device node.
+  std::size_t patch_of(std::uint32_t node) const;
   /// Index in shared memory of a device node of the patch.
   std::uint32_t place_of(std::size_t patch, std::uint32_t node) const;
   /// Largest sum over the voxels of a patch, of numbers given for each voxel of the model.

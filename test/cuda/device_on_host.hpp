@@ -40,6 +40,7 @@ static inline float __uint_as_float(std::uint32_t bits)
 }
 static inline std::int32_t __float_as_int(float x) { return static_cast<std::int32_t>(__float_as_uint(x)); }
 static inline float __int_as_float(std::int32_t bits) { return __uint_as_float(static_cast<std::uint32_t>(bits)); }
+static inline float __fdiv_rn(float x, float y) { return x / y; }
 static inline long long __float2ll_rn(float x) { return llrintf(x); }
 template <class T>
 static inline T atomicMin(T* at, T value)

@@ -93,6 +93,55 @@ TEST(VoxelPatches, GiveEveryNodeOneOwnerWithAllItsVoxels)
       check_patches(shell, { blocks, turns });
 }
 
+// Nodes that follow others are in the patch of their masters, wherever the planes of a flap are in the grid.
+TEST(VoxelPatches, KeepGroupsTogether)
+{
+  test::BlockSettings s;
+  s.voxels = { { 12, 9, 6 } };
+  Model model = test::block_model(s);
+  const std::int32_t first = 7, shift = 4;
+  model.flaps = { { first, shift } };
+  for (auto& voxel : model.voxels)
+    if (voxel[2] >= 3 && voxel[0] < 8)
+      voxel[2] += shift;
+  std::sort(model.voxels.begin(), model.voxels.end(),
+            [](const auto& a, const auto& b)
+            { return std::lexicographical_compare(a.rbegin(), a.rend(), b.rbegin(), b.rend()); });
+  model.size[2] += shift;
+  build_nodes(model);
+  const auto add = [&](std::size_t n, const std::array<std::int32_t, 3>& master, bool joined)
+  {
+    const auto node = static_cast<std::int32_t>(n);
+    const auto at = std::find(model.nodes.begin(), model.nodes.end(), master);
+    if (at == model.nodes.end())
+      return;
+    const auto of = static_cast<std::int32_t>(at - model.nodes.begin());
+    if (joined)
+      model.joints.push_back({ node, of });
+    else
+      model.attached.push_back({ node, of, 0.5, -1, -1, -1 });
+  };
+  for (std::size_t n = 0; n < model.nodes.size(); ++n)
+  {
+    const auto& at = model.nodes[n];
+    if (at[2] >= first)
+      add(n, rest_place(model, at), true);
+    else if (at[2] == 0)
+      add(n, { { at[0] / 2 * 2, at[1], 1 } }, false);
+  }
+  EXPECT_GT(model.joints.size(), 20u);
+  for (const int blocks : { 1, 7, 30 })
+  {
+    check_patches(model, { blocks, 1 });
+    const VoxelPatches patches(model, { blocks, 1 });
+    const auto patch_of = [&](std::int32_t n) { return patches.patch_of(patches.device_node[n]); };
+    for (const auto& node : model.attached)
+      EXPECT_EQ(patch_of(node.node), patch_of(node.master));
+    for (const auto& joint : model.joints)
+      EXPECT_EQ(patch_of(joint.node), patch_of(joint.master));
+  }
+}
+
 TEST(VoxelPatches, TakeVoxelsThatCostMoreFirst)
 {
   for (const unsigned effects : { test::viscosity, test::contraction, test::everything })

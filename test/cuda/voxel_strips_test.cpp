@@ -127,6 +127,30 @@ TEST(VoxelStrips, CutRowsThatAreLongerThanAWarp)
   }
 }
 
+// Voxels on the second side of a gap have planes of their own, although they rest at the places of other voxels.
+TEST(VoxelStrips, KeepTheSidesOfAGapApart)
+{
+  test::BlockSettings s;
+  s.voxels = { { 7, 6, 5 } };
+  Model model = test::block_model(s);
+  const std::size_t whole = model.nodes.size();
+  const std::int32_t first = model.size[2] + 1, shift = first - 2;
+  model.flaps = { { first, shift } };
+  for (auto& voxel : model.voxels)
+    if (voxel[2] >= 2 && voxel[0] < 4)
+      voxel[2] += shift;
+  std::sort(model.voxels.begin(), model.voxels.end(),
+            [](const auto& a, const auto& b)
+            { return std::lexicographical_compare(a.rbegin(), a.rend(), b.rbegin(), b.rend()); });
+  model.size[2] += first;
+  build_nodes(model);
+  EXPECT_EQ(rest_place(model, model.nodes.back()), (std::array<std::int32_t, 3>{ { 4, 6, 5 } }));
+  EXPECT_GT(model.nodes.size(), whole);
+  for (const int rows : { 2, 3 })
+    for (const int planes : { 1, 3, 64 })
+      check_strips(model, { rows, planes });
+}
+
 TEST(VoxelStrips, FillALargeBlock)
 {
   test::BlockSettings s;

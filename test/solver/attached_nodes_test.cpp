@@ -81,12 +81,6 @@ RigidTransform turned(double angle, const std::array<double, 3>& shift)
 
 class Attached : public test::EveryBackend
 {
-protected:
-  void SetUp() override
-  {
-    if (GetParam() == "cuda")
-      GTEST_SKIP() << "computed on the CPU alone";
-  }
 };
 
 }  // namespace
@@ -241,6 +235,62 @@ TEST_P(Attached, TheBoundOfTheTimeStepHolds)
     solver->advance(0.1, solver->controls());
     EXPECT_LT(energy(), 1.3 * before) << (slides ? "sliding" : "held");
   }
+}
+
+// Held and sliding nodes, on surfaces that stand still and on a bone that moves, and nodes that are joined.
+TEST_P(Attached, MoveAsInTheReference)
+{
+  for (const std::int32_t bone : { -1, 0 })
+    for (const bool sampled : { false, true })
+    {
+      Model model = sliding_block(sampled, bone);
+      model.bones = { "jaw" };
+      for (AttachedNode& node : model.attached)
+        node.bone = node.surface < 0 ? bone : -1;
+      for (std::size_t n = 0; n < model.nodes.size(); ++n)
+        if (model.nodes[n][2] == 6)
+          model.joints.push_back({ static_cast<std::int32_t>(n), index_of(model, above(model.nodes[n], 5)) });
+      model.flaps = { { 6, 1 } };  // joined nodes rest at the same place
+      model.gravity = { { 2, 1, -9.81 } };
+      std::vector<Vectors> found;
+      for (const Backend& backend : { GetParam(), Backend("reference") })
+      {
+        const auto solver = make_solver(std::make_shared<const Model>(model), { backend, 2, 4e-6 });
+        Controls target = solver->controls();
+        target.bone[0] = turned(0.02, { { 1e-4, 0, 2e-4 } });
+        solver->advance(4e-3, target);
+        solver->displacements(found.emplace_back());
+      }
+      double size = 0, apart = 0;
+      for (std::size_t n = 0; n < found[0].size(); ++n)
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          apart = std::max(apart, std::abs(found[0][n][axis] - found[1][n][axis]));
+          size = std::max(size, std::abs(found[1][n][axis]));
+        }
+      EXPECT_GT(size, 1e-5);
+      EXPECT_LT(apart, 1e-3 * size) << bone << (sampled ? " sampled" : " closed form");
+    }
+}
+
+// In the assembled model, held nodes move with their masters.
+TEST_P(Attached, TheAssembledStepIsThatOfTheReference)
+{
+  Model model = held_block();
+  for (std::size_t e = 0; e < model.voxels.size(); ++e)
+    if (model.voxels[e][2] == 0)
+      model.fill[e] = e % 3 == 0 ? 0.02F : 0.6F;
+  model.time_step_estimate = TimeStepEstimate::assembled;
+  double step[2], before = 0;
+  for (int b = 0; b < 2; ++b)
+  {
+    const auto solver = make_solver(std::make_shared<const Model>(model), { b == 0 ? GetParam() : "reference", 2, 0 });
+    before = solver->time_step();
+    solver->advance(0.01, solver->controls());
+    step[b] = solver->time_step();
+  }
+  EXPECT_NEAR(step[0] / step[1], 1, 5e-3);
+  EXPECT_GT(step[1], 1.05 * before) << "a search was made";
 }
 
 TEST(AttachedOnCpu, ThreadsDoNotChangeABit)

@@ -45,6 +45,20 @@ void move_floor(Model& m)
   m.constraint_surfaces[0].friction = 0.4;
 }
 
+// The nodes on the floor follow those above them along the floor's normal. Voxels are cut.
+void attach_to_floor(Model& m)
+{
+  for (const SlidingNode& node : m.sliding)
+  {
+    auto above = m.nodes[node.node];
+    ++above[2];
+    const auto master = std::find(m.nodes.begin(), m.nodes.end(), above) - m.nodes.begin();
+    m.attached.push_back({ node.node, static_cast<std::int32_t>(master), 0.3, -1, node.surface, -1 });
+  }
+  m.sliding.clear();
+  m.tissue_centre.assign(m.voxels.size(), { { 0.2F, -0.1F, 0.5F } });
+}
+
 // Makes the load constant, so that on a GPU one launch makes many steps.
 void steady(Model& m)
 {
@@ -63,6 +77,13 @@ std::vector<Variant> variants()
            { "double", [](Model& m) { m.precision = Precision::double_precision; } },
            { "reduced", [](Model& m) { m.integration = Integration::selective_reduced; } },
            { "moved", move_floor, true },
+           { "attached", attach_to_floor, true },
+           { "attached, moved",
+             [](Model& m)
+             {
+               move_floor(m);
+               attach_to_floor(m);
+             } },
            { "steady", steady },
            { "moved, steady",
              [](Model& m)

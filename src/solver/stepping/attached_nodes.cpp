@@ -1,7 +1,6 @@
 #include "solver/stepping/attached_nodes.hpp"
 
 #include "frontalis/model/sample_field.hpp"
-#include "frontalis/physics/sliding.hpp"
 #include "solver/contact/gliding_nodes.hpp"
 
 #include <algorithm>
@@ -27,67 +26,6 @@ void put(const Point& p, Real* const to[3], std::int32_t n)
   to[1][n] = static_cast<Real>(p.y);
   to[2][n] = static_cast<Real>(p.z);
 }
-
-/// Equation for the velocity of a master, mass * velocity = momentum, with sums over the master and the nodes that
-/// follow it.
-struct Balance
-{
-  double mass[3][3] = {};
-  double momentum[3] = {};
-
-  void add(double m, const Point& v)
-  {
-    for (int axis = 0; axis < 3; ++axis)
-      mass[axis][axis] += m;
-    add_momentum(m, v);
-  }
-  void add_momentum(double m, const Point& v)
-  {
-    momentum[0] += m * v.x;
-    momentum[1] += m * v.y;
-    momentum[2] += m * v.z;
-  }
-  /// Adds a mass that follows the master along one direction only, with dot(direction, velocity) = speed.
-  void add(double m, const Point& direction, double speed)
-  {
-    const double d[3] = { direction.x, direction.y, direction.z };
-    for (int i = 0; i < 3; ++i)
-    {
-      momentum[i] += m * speed * d[i];
-      for (int j = 0; j < 3; ++j)
-        mass[i][j] += m * d[i] * d[j];
-    }
-  }
-  void fix(int axis, double velocity)
-  {
-    for (int i = 0; i < 3; ++i)
-    {
-      momentum[i] -= mass[i][axis] * velocity;
-      mass[i][axis] = mass[axis][i] = 0;
-    }
-    mass[axis][axis] = 1;
-    momentum[axis] = velocity;
-  }
-  /// Solves the equation by elimination; the matrix is symmetric and positive definite.
-  Point velocity()
-  {
-    for (int p = 0; p < 3; ++p)
-      for (int i = p + 1; i < 3; ++i)
-      {
-        const double factor = mass[i][p] / mass[p][p];
-        for (int j = p; j < 3; ++j)
-          mass[i][j] -= factor * mass[p][j];
-        momentum[i] -= factor * momentum[p];
-      }
-    for (int p = 2; p >= 0; --p)
-    {
-      for (int j = p + 1; j < 3; ++j)
-        momentum[p] -= mass[p][j] * momentum[j];
-      momentum[p] /= mass[p][p];
-    }
-    return { momentum[0], momentum[1], momentum[2] };
-  }
-};
 
 }  // namespace
 
@@ -117,21 +55,33 @@ struct AttachedNodes<Real>::Bones
   }
 };
 
+std::vector<AttachedNode> nodes_by_master(const Model& model)
+{
+  std::vector<AttachedNode> nodes = model.attached;
+  for (const Model::Joint& joint : model.joints)
+    nodes.push_back({ joint.node, joint.master, 1, -1, -1, -1 });
+  std::stable_sort(nodes.begin(), nodes.end(),
+                   [](const AttachedNode& a, const AttachedNode& b) { return a.master < b.master; });
+  return nodes;
+}
+
+std::vector<std::array<bool, 3>> prescribed_axes(const Model& model)
+{
+  std::vector<std::array<bool, 3>> fixed(model.nodes.size(), { { false, false, false } });
+  for (const PrescribedNode& node : model.prescribed)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      fixed[node.node][axis] = fixed[node.node][axis] || model.loads[node.load].fixed[axis];
+  return fixed;
+}
+
 template <class Real>
 AttachedNodes<Real>::AttachedNodes(const Model& model, const std::vector<double>& mass, AttachKernel<Real> kernel)
     : model_(model), mass_(mass), blocks_(model, mass, kernel)
 {
   for (const ConstraintSurface& surface : model.constraint_surfaces)
     fields_.push_back(view(surface.field));
-  std::vector<std::array<bool, 3>> fixed(model.nodes.size(), { { false, false, false } });
-  for (const PrescribedNode& node : model.prescribed)
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      fixed[node.node][axis] = fixed[node.node][axis] || model.loads[node.load].fixed[axis];
-  std::vector<AttachedNode> nodes = model.attached;
-  for (const Model::Joint& joint : model.joints)
-    nodes.push_back({ joint.node, joint.master, 1, -1, -1, -1 });
-  std::stable_sort(nodes.begin(), nodes.end(),
-                   [](const AttachedNode& a, const AttachedNode& b) { return a.master < b.master; });
+  const std::vector<std::array<bool, 3>> fixed = prescribed_axes(model);
+  const std::vector<AttachedNode> nodes = nodes_by_master(model);
   for (std::size_t begin = 0, end = 0; begin < nodes.size(); begin = end)
   {
     while (end < nodes.size() && nodes[end].master == nodes[begin].master)
@@ -206,8 +156,10 @@ void AttachedNodes<Real>::constrain_groups(const NodeShare& share, Real* const u
   const auto begin = std::lower_bound(groups_.begin(), groups_.end(), share.first_node, before),
              end = std::lower_bound(begin, groups_.end(), share.end_node, before);
   const Bones bones(step);
+  Real* const of_u[3] = { u[0], u[1], u[2] };
+  Real* const of_v[3] = { v[0], v[1], v[2] };
   for (auto group = begin; group != end; ++group)
-    follow_on_bones(*group, u, v, bones);
+    follow_on_bones(*group, of_u, of_v, bones);
 }
 
 // Linearises the level at `place` if `place` is outside the range of the present plane. Where the field ends or its
@@ -215,94 +167,79 @@ void AttachedNodes<Real>::constrain_groups(const NodeShare& share, Real* const u
 template <class Real>
 void AttachedNodes<Real>::renew(Plane& plane, std::int32_t surface, const Point& place) const
 {
-  const Point way = place - plane.place;
-  if (dot(way, way) <= plane.slip_squared)
-    return;
   const physics::DistanceField& field = fields_[surface];
   physics::FieldValue<double> value{};
-  physics::LevelPlane<double> level{};
-  if (!sample(field, field_point(field, place), value) || !level_plane(value, 0.0, level))
-    return;
-  plane = { value.gradient, place, value.value, level.slip * level.slip };
+  if (!plane.covers(place) && sample(field, field_point(field, place), value))
+    physics::renew_level(value, place, plane);
 }
 
-// Finds the velocity of the master that minimises the sum over the group of mass times |v - v*|^2, where v* and v are
-// the velocities of a node before and after the constraints. A held node contributes its mass along all axes, a sliding
-// node along the gradient of its master's level.
+/// A group in the form that move_attached_group() reads.
 template <class Real>
-void AttachedNodes<Real>::follow_on_bones(const Group& group, Real* const u[3], Real* const v[3], const Bones& bones)
+struct AttachedNodes<Real>::MovedGroup
 {
-  const std::int32_t m = group.master;
-  const Point rest = rest_point(model_, m), u_m = point_of(u, m), v_m = point_of(v, m), place_m = rest + u_m;
-  // Motion of a sliding node or of its master relative to the surface.
-  struct Relative
+  using Motion = physics::PointMotion<double>;
+
+  AttachedNodes& of;
+  const Group& group;
+  Real* const (&u)[3];
+  Real* const (&v)[3];
+  const Bones& bones;
+  Point rest;  // of the master
+
+  std::int32_t first() const { return group.begin; }
+  std::int32_t last() const { return group.end; }
+  std::int32_t stride() const { return 1; }
+  void join(physics::Balance<double>& /*balance*/) const {}
+  double mass() const { return of.mass_[group.master]; }
+  bool fixed(int axis) const { return group.fixed[axis]; }
+  const Tie& at(std::int32_t tie) const { return of.ties_[tie]; }
+  bool held(std::int32_t tie) const { return at(tie).surface < 0; }
+  double ratio(std::int32_t tie) const { return at(tie).ratio; }
+  double mass(std::int32_t tie) const { return at(tie).mass; }
+  double offset(std::int32_t tie) const { return at(tie).offset; }
+
+  Motion motion_of(std::int32_t node) const { return { point_of(u, node), point_of(v, node) }; }
+  void set_motion_of(std::int32_t node, const Motion& motion) const
   {
-    Point gradient;  // gradient of the level, in the scene's axes
-    Point surface_velocity;
-    double level;
-  };
-  const auto relative = [&](std::int32_t plane, const Tie& tie, const Point& place)
+    put(motion.u, u, node);
+    put(motion.v, v, node);
+  }
+  Motion motion() const { return motion_of(group.master); }
+  Motion motion(std::int32_t tie) const { return motion_of(at(tie).node); }
+  void set_motion(const Motion& motion) const { set_motion_of(group.master, motion); }
+  void set_motion(std::int32_t tie, const Motion& motion) const { set_motion_of(at(tie).node, motion); }
+
+  Motion bone_at(std::int32_t bone, const Point& p) const
+  {
+    return { bones.displacement(bone, p), bones.velocity(bone, p) };
+  }
+  Motion bone_at_node(std::int32_t tie) const { return bone_at(at(tie).bone, at(tie).rest); }
+  Motion bone_at_master(std::int32_t tie) const { return bone_at(at(tie).bone, rest); }
+
+  physics::MovingLevel<double> level(std::int32_t plane, const Tie& tie, const Point& place) const
   {
     const physics::Pose& pose = bones.now[bones.index(tie.bone)];
     const Point p = pose.inwards(place);
-    Plane& at = planes_[plane];
-    renew(at, tie.surface, p);
-    return Relative{ pose.turned(at.gradient), bones.velocity(tie.bone, p), at.level_at(p) };
-  };
+    Plane& kept = of.planes_[plane];
+    of.renew(kept, tie.surface, p);
+    return { pose.turned(kept.gradient), bones.velocity(tie.bone, p), kept.level_at(p) };
+  }
+  physics::MovingLevel<double> level_of_node(std::int32_t tie, const Point& moved) const
+  {
+    return level(at(tie).plane, at(tie), at(tie).rest + moved);
+  }
+  physics::MovingLevel<double> level_of_master(std::int32_t tie, const Point& moved) const
+  {
+    return level(at(tie).master_plane, at(tie), rest + moved);
+  }
+};
 
-  Balance balance;
-  balance.add(mass_[m], v_m);
-  for (auto t = group.begin; t < group.end; ++t)
-  {
-    const Tie& tie = ties_[t];
-    const double r = tie.ratio;
-    const Point v_s = point_of(v, tie.node);
-    if (tie.surface < 0)
-    {
-      // Relative to the bone, the velocity of the held node is r times that of the master.
-      const Point apart = v_s - bones.velocity(tie.bone, tie.rest);
-      balance.add(r * r * tie.mass, bones.velocity(tie.bone, rest));
-      balance.add_momentum(r * tie.mass, apart);
-      continue;
-    }
-    const Relative s = relative(tie.plane, tie, tie.rest + point_of(u, tie.node));
-    const Relative at_m = relative(tie.master_plane, tie, place_m);
-    const double steepness = dot(s.gradient, s.gradient);
-    if (!(steepness > 0))
-      continue;
-    balance.add(tie.mass / steepness, r * at_m.gradient,
-                dot(s.gradient, v_s - s.surface_velocity) + r * dot(at_m.gradient, at_m.surface_velocity));
-  }
-  const double kept[3] = { v_m.x, v_m.y, v_m.z };
-  for (int axis = 0; axis < 3; ++axis)
-    if (group.fixed[axis])
-      balance.fix(axis, kept[axis]);
-  const Point now = balance.velocity(), shift = bones.dt * (now - v_m);
-  put(now, v, m);
-  put(u_m + shift, u, m);
-  for (auto t = group.begin; t < group.end; ++t)
-  {
-    const Tie& tie = ties_[t];
-    const double r = tie.ratio;
-    if (tie.surface < 0)
-    {
-      put(bones.velocity(tie.bone, tie.rest) + r * (now - bones.velocity(tie.bone, rest)), v, tie.node);
-      put(bones.displacement(tie.bone, tie.rest) + r * (u_m + shift - bones.displacement(tie.bone, rest)), u, tie.node);
-      continue;
-    }
-    const Point u_s = point_of(u, tie.node), v_s = point_of(v, tie.node);
-    const Relative s = relative(tie.plane, tie, tie.rest + u_s), at_m = relative(tie.master_plane, tie, place_m);
-    const double steepness = dot(s.gradient, s.gradient);
-    if (!(steepness > 0))
-      continue;
-    const double speed =
-        r * dot(at_m.gradient, now - at_m.surface_velocity) - dot(s.gradient, v_s - s.surface_velocity);
-    const double apart = s.level + bones.dt * speed - r * (at_m.level + dot(at_m.gradient, shift)) - tie.offset;
-    // An error of the level is removed gradually, as for other sliding nodes (physics/sliding.hpp).
-    const double left = std::clamp(0.5 * apart, -physics::error_left, physics::error_left);
-    put(v_s + (speed / steepness) * s.gradient, v, tie.node);
-    put(u_s + ((bones.dt * speed - (apart - left)) / steepness) * s.gradient, u, tie.node);
-  }
+template <class Real>
+void AttachedNodes<Real>::follow_on_bones(const Group& group, Real* const (&u)[3], Real* const (&v)[3],
+                                          const Bones& bones)
+{
+  MovedGroup moved{ *this, group, u, v, bones, rest_point(model_, group.master) };
+  physics::move_attached_group(moved, bones.dt);
 }
 
 template class AttachedNodes<float>;

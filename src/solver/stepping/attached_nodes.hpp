@@ -2,6 +2,7 @@
 
 #include "frontalis/model/model.hpp"
 #include "frontalis/physics/distance_field.hpp"
+#include "frontalis/physics/element/attached_group.hpp"
 #include "solver/cpu/slide_kernel.hpp"
 #include "solver/stepping/attached_blocks.hpp"
 #include "solver/stepping/node_part.hpp"
@@ -12,6 +13,12 @@
 
 namespace frontalis
 {
+
+/// The attached nodes of a model and its joints, which are held by their masters with the ratio 1, in ascending order
+/// of masters.
+std::vector<AttachedNode> nodes_by_master(const Model& model);
+/// For each node, the axes along which it has a prescribed path.
+std::vector<std::array<bool, 3>> prescribed_axes(const Model& model);
 
 /// Nodes whose motion follows that of another node (AttachedNode), and the joints of flaps (Model::Joint), whose two
 /// nodes move as one. After the free update of a step, a master and the nodes that follow it get those velocities that
@@ -53,18 +60,12 @@ private:
     Point rest;
     double offset;  // level_offset() [m]
   };
-  // The level of a node, linearised at a place in the frame of the surface.
-  struct Plane
-  {
-    Point gradient{ 0, 0, 0 }, place{ 0, 0, 0 };
-    double level = 0, slip_squared = -1;
-
-    double level_at(const Point& p) const { return level + dot(gradient, p - place); }
-  };
+  using Plane = physics::KeptLevel<double>;
   struct Bones;
+  struct MovedGroup;
 
   void add_group(const AttachedNode* begin, const AttachedNode* end, const std::array<bool, 3>& fixed);
-  void follow_on_bones(const Group& group, Real* const u[3], Real* const v[3], const Bones& bones);
+  void follow_on_bones(const Group& group, Real* const (&u)[3], Real* const (&v)[3], const Bones& bones);
   void renew(Plane& plane, std::int32_t surface, const Point& place) const;
 
   const Model& model_;

@@ -94,23 +94,26 @@ double mode_amplitude(const Model& model, int iteration)
   return iteration % 2 == 0 ? amplitude : -amplitude;
 }
 
+std::vector<double> roots_for_search(const Discretisation& discretisation)
+{
+  std::vector<double> mass = discretisation.node_mass, root;
+  for (const auto& node : discretisation.followers)
+    mass[node.master] += node.ratio * node.ratio * mass[node.node];
+  root.reserve(mass.size());
+  for (const double m : mass)
+    root.push_back(1 / std::sqrt(m));
+  for (const auto& node : discretisation.followers)
+    root[node.node] = 0;
+  for (const auto n : discretisation.held)
+    root[n] = 0;
+  return root;
+}
+
 double highest_frequency_squared(const Model& model, const Discretisation& discretisation, const NodalVectors& u,
                                  const std::function<void(const NodalVectors& at, NodalVectors& out)>& internal_forces)
 {
-  std::vector<double> root;  // square root of each node's inverse mass; 0: the node is held
-  root.reserve(u.size());
-  for (const double mass : discretisation.node_mass)
-    root.push_back(1 / std::sqrt(mass));
-  for (const auto n : discretisation.held)
-    root[n] = 0;
+  const std::vector<double> root = roots_for_search(discretisation);
   const auto& followers = discretisation.followers;
-  for (const auto& node : followers)
-  {
-    root[node.node] = 0;
-    if (root[node.master] > 0)
-      root[node.master] = 1 / std::sqrt(1 / (root[node.master] * root[node.master]) +
-                                        node.ratio * node.ratio * discretisation.node_mass[node.node]);
-  }
   NodalVectors moved(root.size()), present, forces;
   internal_forces(u, present);
   LanczosVector now{ random_mode(root.size()) }, before{ NodalVectors(root.size()) };

@@ -38,6 +38,10 @@ constexpr int most_lanczos_iterations = 32;
 NodalVectors random_mode(std::size_t nodes);
 double mode_amplitude(const Model& model, int iteration);
 
+/// Square root of each node's inverse mass in the search [kg^-1/2]. A master has the mass of its group, and nodes that
+/// are held or follow a master have 0.
+std::vector<double> roots_for_search(const Discretisation& discretisation);
+
 /// Squared highest frequency [1/s2] of the assembled model at displacements u: the largest eigenvalue of M^-1/2 K
 /// M^-1/2 by Lanczos iteration. Products with K are differences of internal forces and therefore include every law and
 /// fibre. Held nodes do not move, and held attached nodes follow their masters. Other constraints could only lower the

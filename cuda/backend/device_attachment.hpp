@@ -1,0 +1,57 @@
+#pragma once
+
+#include "cuda/backend/device_memory.hpp"
+#include "cuda/kernels/step_kernel.hpp"
+#include "solver/stepping/attached_nodes.hpp"
+
+#include <vector>
+
+namespace frontalis
+{
+namespace cuda
+{
+
+/// The groups of a model in the form that the device needs; see AttachedArguments. The groups of a patch are
+/// successive. Of them, or of all groups in strips, those whose nodes are all held come first, and both kinds are in
+/// the order of the masters' device nodes.
+struct AttachedTables
+{
+  /// `patches`: null in strips.
+  AttachedTables(const Model& model, const std::vector<double>& mass, const std::vector<std::uint32_t>& device_node,
+                 const VoxelPatches* patches);
+
+  std::vector<AttachedGroup> groups;
+  std::vector<AttachedTie> ties;
+  std::vector<AttachedPlace> places;
+  std::vector<std::uint32_t> patch_groups;
+
+private:
+  std::int32_t add_place(const Model& model, std::int32_t node, std::int32_t surface);
+};
+
+/// Attached nodes and joints in device memory. It is what AttachedNodes is on host backends.
+class DeviceAttachment : public EffectPart
+{
+public:
+  DeviceAttachment(const Model& model, const std::vector<double>& mass, const std::vector<std::uint32_t>& device_node,
+                   const VoxelPatches* patches);
+
+  bool empty() const { return groups_.size() == 0; }
+  /// Sets the members of `g` that describe groups.
+  void describe(StepArguments& g) const;
+  void list_arrays(ArrayList& list) override;
+  void run(EffectSet) override {}
+  void reset() override { planes_.clear(); }
+
+private:
+  explicit DeviceAttachment(const AttachedTables& tables);
+
+  DeviceArray<AttachedGroup> groups_;
+  DeviceArray<AttachedTie> ties_;
+  DeviceArray<AttachedPlace> places_;
+  DeviceArray<physics::KeptLevel<float>> planes_;
+  DeviceArray<std::uint32_t> patch_groups_;
+};
+
+}  // namespace cuda
+}  // namespace frontalis
