@@ -51,21 +51,20 @@ __device__ __forceinline__ bool distance_at(const ContactArguments& c, std::uint
                        [&](std::uint32_t code) { return aside(enter_contact_cell)(c, index, code); });
 }
 
-/// A point's position relative to the origin of a bone's frame [m].
-__device__ __forceinline__ physics::Vec3<double> from_bone(const StepArguments& g, int step, const ContactBody& body,
-                                                           const ContactPoint& point, const physics::Vec3<float>& moved)
+/// A point's position relative to the origin of its body's frame [m].
+__device__ __forceinline__ physics::Vec3<float> from_body(const StepArguments& g, int step, const ContactBody& body,
+                                                          const ContactPoint& point, const physics::Vec3<float>& moved)
 {
-  double origin[3] = { 0, 0, 0 };
-  if (body.bone >= 0)
+  physics::Vec3<double> arm{ body.middle[0] + double(point.arm[0]) + double(moved.x),
+                             body.middle[1] + double(point.arm[1]) + double(moved.y),
+                             body.middle[2] + double(point.arm[2]) + double(moved.z) };
+  if (body.moves)
   {
-    const physics::Vec3<float> t = bone_motion_at(g, step, body.bone).displacement_of({ 0, 0, 0 });
-    origin[0] = t.x;
-    origin[1] = t.y;
-    origin[2] = t.z;
+    const physics::Vec3<double> middle{ body.middle[0], body.middle[1], body.middle[2] };
+    const physics::Vec3<float> back = body_pose_at(g, step, point.body).back_to_rest(middle);
+    arm = arm + physics::Vec3<double>{ double(back.x), double(back.y), double(back.z) };
   }
-  return { body.middle[0] + double(point.arm[0]) + double(moved.x) - origin[0],
-           body.middle[1] + double(point.arm[1]) + double(moved.y) - origin[1],
-           body.middle[2] + double(point.arm[2]) + double(moved.z) - origin[2] };
+  return { static_cast<float>(arm.x), static_cast<float>(arm.y), static_cast<float>(arm.z) };
 }
 
 /// A point of contact in one step.
@@ -90,10 +89,9 @@ __device__ __forceinline__ void leave_force(const StepArguments& g, const PointS
 {
   if (!at.last)
     return;
-  const physics::Vec3<double> arm = from_bone(g, at.step, body, point, at.moved);
+  const physics::Vec3<float> arm = from_body(g, at.step, body, point, at.moved);
   g.contact.forces[at.index] = make_float4(force.x, force.y, force.z, lost);
-  g.contact.arms[at.index] =
-      make_float4(static_cast<float>(arm.x), static_cast<float>(arm.y), static_cast<float>(arm.z), 0);
+  g.contact.arms[at.index] = make_float4(arm.x, arm.y, arm.z, 0);
 }
 
 /// Finds the force on a point, which is zero if it does not touch.
@@ -109,7 +107,7 @@ __device__ __forceinline__ Push find_push(const StepArguments& g, const ContactP
   const ContactBody& body = c.bodies[point.body];
   BodyPose pose{};
   Place gone = at.moved;
-  if (body.bone >= 0)
+  if (body.moves)
   {
     pose = body_pose_at(g, at.step, point.body);
     gone = pose.gone({ point.arm[0], point.arm[1], point.arm[2] }, at.moved);
@@ -131,7 +129,7 @@ __device__ __forceinline__ Push find_push(const StepArguments& g, const ContactP
     const auto touch = physics::touch<float>(value, gone, grip, point.stiffness, body.friction, response);
     c.grips[at.index] = make_float4(touch.grip.anchor.x, touch.grip.anchor.y, touch.grip.anchor.z, touch.grip.normal);
     c.holds[at.index] = { touch.grip.along, int(Touching::yes) };
-    const Place force = body.bone >= 0 ? pose.turned(touch.force) : touch.force;
+    const Place force = body.moves ? pose.turned(touch.force) : touch.force;
     leave_force(g, at, point, body, force, touch.lost);
     return { force, 0 };
   }
