@@ -24,7 +24,6 @@ inline ContactBody contact_body(const Contact& contact, const physics::DistanceF
                     static_cast<float>(contact.reach),
                     static_cast<float>(contact.friction),
                     contact.bone,
-                    contact.bone >= 0 || contact.mass > 0,
                     {} };
   for (const auto& point : contact.points)
     for (std::size_t axis = 0; axis < 3; ++axis)

@@ -17,7 +17,6 @@ struct ContactBody
   float reach;            ///< Contact::reach [m]
   float friction;
   std::int32_t bone;  ///< bone with which the body moves; -1: none
-  bool moves;         ///< whether its pose may change: it moves with a bone, or is pushed
   double middle[3];   ///< middle of the points that may touch the body, at rest [m]
 };
 

@@ -55,16 +55,11 @@ __device__ __forceinline__ bool distance_at(const ContactArguments& c, std::uint
 __device__ __forceinline__ physics::Vec3<float> from_body(const StepArguments& g, int step, const ContactBody& body,
                                                           const ContactPoint& point, const physics::Vec3<float>& moved)
 {
-  physics::Vec3<double> arm{ body.middle[0] + double(point.arm[0]) + double(moved.x),
-                             body.middle[1] + double(point.arm[1]) + double(moved.y),
-                             body.middle[2] + double(point.arm[2]) + double(moved.z) };
-  if (body.moves)
-  {
-    const physics::Vec3<double> middle{ body.middle[0], body.middle[1], body.middle[2] };
-    const physics::Vec3<float> back = body_pose_at(g, step, point.body).back_to_rest(middle);
-    arm = arm + physics::Vec3<double>{ double(back.x), double(back.y), double(back.z) };
-  }
-  return { static_cast<float>(arm.x), static_cast<float>(arm.y), static_cast<float>(arm.z) };
+  const physics::Vec3<double> middle{ body.middle[0], body.middle[1], body.middle[2] };
+  const physics::Vec3<float> back = body_pose_at(g, step, point.body).back_to_rest(middle);
+  return { static_cast<float>(middle.x + double(point.arm[0]) + double(moved.x) + double(back.x)),
+           static_cast<float>(middle.y + double(point.arm[1]) + double(moved.y) + double(back.y)),
+           static_cast<float>(middle.z + double(point.arm[2]) + double(moved.z) + double(back.z)) };
 }
 
 /// A point of contact in one step.
@@ -105,18 +100,12 @@ __device__ __forceinline__ Push find_push(const StepArguments& g, const ContactP
   const float4 held = c.grips[at.index], clear = c.clearances[at.index];
   ContactHold hold = c.holds[at.index];
   const ContactBody& body = c.bodies[point.body];
-  BodyPose pose{};
-  Place gone = at.moved;
-  if (body.moves)
-  {
-    pose = body_pose_at(g, at.step, point.body);
-    gone = pose.gone({ point.arm[0], point.arm[1], point.arm[2] }, at.moved);
-  }
+  const BodyPose pose = body_pose_at(g, at.step, point.body);
+  const Place gone = pose.gone({ point.arm[0], point.arm[1], point.arm[2] }, at.moved);
   const Place away = gone - Place{ clear.x, clear.y, clear.z };
-  const float way = norm(away);
-  const bool far = way < clear.w;
+  const bool far = clear.w > 0 && dot(away, away) < clear.w * clear.w;
   if (far && hold.touching == int(Touching::no) && held.w == 0)
-    return { { 0, 0, 0 }, clear.w - way };
+    return { { 0, 0, 0 }, fmaxf(clear.w - norm(away), 0) };
 
   physics::Grip<float> grip{ { held.x, held.y, held.z }, held.w, hold.along };
   const auto response = static_cast<float>(g.friction_response);
@@ -129,7 +118,7 @@ __device__ __forceinline__ Push find_push(const StepArguments& g, const ContactP
     const auto touch = physics::touch<float>(value, gone, grip, point.stiffness, body.friction, response);
     c.grips[at.index] = make_float4(touch.grip.anchor.x, touch.grip.anchor.y, touch.grip.anchor.z, touch.grip.normal);
     c.holds[at.index] = { touch.grip.along, int(Touching::yes) };
-    const Place force = body.moves ? pose.turned(touch.force) : touch.force;
+    const Place force = pose.turned(touch.force);
     leave_force(g, at, point, body, force, touch.lost);
     return { force, 0 };
   }
