@@ -47,6 +47,7 @@ static inline float __uint_as_float(std::uint32_t bits)
 static inline std::int32_t __float_as_int(float x) { return static_cast<std::int32_t>(__float_as_uint(x)); }
 static inline float __int_as_float(std::int32_t bits) { return __uint_as_float(static_cast<std::uint32_t>(bits)); }
 static inline long long __float2ll_rn(float x) { return llrintf(x); }
+static inline int __float2int_rn(float x) { return static_cast<int>(lrintf(x)); }
 template <class T>
 static inline T atomicMin(T* at, T value)
 {
