@@ -19,9 +19,10 @@ namespace cuda
 struct TouchMemory
 {
   float4 *moved, *normal, *dual[2], *change;
-  std::int32_t* sums;   // of forces and moments, in units of TouchPatches: [component][vertex]
-  float4* pairs;        // the first entries of the list: [word of TouchEntry][entry]
-  std::uint32_t* code;  // of these entries: TouchPatches::entry_vertex
+  std::int32_t* sums;     // of forces and moments, in units of TouchPatches: [component][vertex]
+  float4* pairs;          // the first entries of the list: [word of TouchEntry][entry]
+  std::uint32_t* code;    // of these entries: TouchPatches::entry_vertex
+  std::uint32_t* pushed;  // TouchStep::mark of the latest step in which a pair had forces
   std::uint32_t room;
 };
 
@@ -45,6 +46,8 @@ __device__ __forceinline__ TouchMemory touch_memory(const PatchMemory& memory, s
            reinterpret_cast<std::int32_t*>(first + (5 + 4 * touch_ahead) * room),
            first + 5 * room,
            reinterpret_cast<std::uint32_t*>(first + (5 + 4 * touch_ahead) * room) + touch_components * room,
+           reinterpret_cast<std::uint32_t*>(first + (5 + 4 * touch_ahead) * room) +
+               (touch_components + touch_ahead) * room,
            room };
 }
 
@@ -54,6 +57,8 @@ __device__ __forceinline__ void clear_touch(const StepLaunch& launch, const Patc
   const TouchMemory own = touch_memory(memory, launch.room.touch_vertices);
   for (std::uint32_t i = threadIdx.x; i < touch_components * own.room; i += blockDim.x)
     own.sums[i] = 0;
+  if (threadIdx.x == 0 && own.room > 0)
+    *own.pushed = 0;
 }
 
 __device__ __forceinline__ TouchStep fetch_touch(const StepArguments& g, const StepLaunch& launch, std::uint32_t p,
@@ -295,6 +300,8 @@ __device__ __forceinline__ void find_listed(const StepArguments& g, const TouchS
         };
         touch_triangle<rubs>(view, v, pair, first, response, add, stored, lost);
         first = pair.triangle;
+        if (pair.held > 0)
+          *own.pushed = touch.mark;
       }
       if (kept)
       {
@@ -322,17 +329,33 @@ __device__ __forceinline__ void find_touch(const StepArguments& g, const TouchSt
     find_listed<false>(g, touch, own);
 }
 
-/// Adds the forces on the patch's vertices to those on the corners of their voxels. Each thread processes a corner of a
-/// voxel. Ends with a barrier.
-__device__ __forceinline__ void add_touch(const StepArguments& g, const TouchStep& touch, const PatchMemory& memory)
+/// Adds the forces on the patch's vertices to those on the corners of their voxels. At first each thread processes a
+/// vertex, then a corner of a voxel. Ends with a barrier.
+__device__ __forceinline__ void add_forces(const TissueContactArguments& c, const TouchStep& touch,
+                                           const PatchMemory& memory, const TouchMemory& own)
 {
-  if (touch.count == 0)
-    return;
-  const TissueContactArguments& c = g.touch;
-  const TouchMemory own = touch_memory(memory, touch.room);
-  const auto sum = [&](std::uint32_t component, std::uint32_t i)
-  { return static_cast<float>(own.sums[component * own.room + i]); };
   const float unit = 1 / c.in_patches.per_newton;
+  for (std::uint32_t i = threadIdx.x; i < touch.patch.vertices; i += blockDim.x)
+  {
+    const std::uint32_t v = __ldg(c.in_patches.vertex_of + touch.patch.vertex_begin + i) & ~touch_mark;
+    const float4 at = __ldg(c.bound.coordinates + v);
+    float sum[touch_components];
+#pragma unroll
+    for (std::uint32_t component = 0; component < touch_components; ++component)
+    {
+      std::int32_t& units = own.sums[component * own.room + i];
+      sum[component] = static_cast<float>(units);
+      units = 0;
+    }
+    const Place force = unit * Place{ sum[0], sum[1], sum[2] };
+    const Place along = normal_push(c, c.vertices[v], (c.edge * unit) * Place{ sum[3], sum[4], sum[5] }, own.dual[0][i],
+                                    own.dual[1][i]);
+    // From here on, the words of the dual vectors have the forces, and the last components the place in the voxel.
+    own.dual[0][i] = make_float4(force.x, force.y, force.z, at.x);
+    own.dual[1][i] = make_float4(along.x, along.y, along.z, at.y);
+    own.normal[i].w = at.z;
+  }
+  __syncthreads();
   for (std::uint32_t i = threadIdx.x; i < 8 * touch.patch.voxels; i += blockDim.x)
   {
     const BoundVoxel voxel = c.in_patches.voxels[touch.patch.voxel_begin + i / 8];
@@ -340,12 +363,9 @@ __device__ __forceinline__ void add_touch(const StepArguments& g, const TouchSte
     Place force{ 0, 0, 0 };
     for (std::uint32_t p = voxel.first; p < voxel.end; ++p)
     {
-      const std::uint32_t v = __ldg(c.in_patches.vertex_of + touch.patch.vertex_begin + p) & ~touch_mark;
-      const TouchPush push{ unit * Place{ sum(0, p), sum(1, p), sum(2, p) },
-                            (c.edge * unit) * Place{ sum(3, p), sum(4, p), sum(5, p) },
-                            own.normal[p],
-                            { own.dual[0][p], own.dual[1][p] } };
-      force = force + corner_push(c, c.vertices[v], __ldg(c.bound.coordinates + v), push, b);
+      const float4 on = own.dual[0][p], along = own.dual[1][p], normal = own.normal[p];
+      force = force + physics::surface_node_force(physics::SideWeights<float>(on.w, along.w, normal.w),
+                                                  static_cast<int>(b), place(on), place(along), place(normal));
     }
     float* const to = memory.force + 3 * b * memory.width + voxel.column;
     // Internal forces have the opposite sign.
@@ -354,8 +374,17 @@ __device__ __forceinline__ void add_touch(const StepArguments& g, const TouchSte
     to[2 * memory.width] -= force.z;
   }
   __syncthreads();
-  for (std::uint32_t i = threadIdx.x; i < touch_components * own.room; i += blockDim.x)
-    own.sums[i] = 0;
+}
+
+/// Adds the forces of find_touch(), and tells other patches that this one has ended the step.
+__device__ __forceinline__ void add_touch(const StepArguments& g, const TouchStep& touch, const PatchMemory& memory)
+{
+  if (touch.count == 0)
+    return;
+  const TissueContactArguments& c = g.touch;
+  const TouchMemory own = touch_memory(memory, touch.room);
+  if (*own.pushed == touch.mark)
+    add_forces(c, touch, memory, own);
   if (threadIdx.x == 0 && !touch.last)
   {
     const float nothing[3] = { 0, 0, 0 };

@@ -202,25 +202,16 @@ __device__ __forceinline__ void touch_triangles(const TissueContactArguments& c,
     c.stored[v] = stored;
 }
 
-/// A vertex's force [N], the moment on its normal [N m], and what they act on.
-struct TouchPush
-{
-  Place force, turn;
-  float4 normal, dual[2];
-};
-
-/// Force of a vertex on corner b of its voxel [N]. `at`: coordinates in the voxel.
-__device__ __forceinline__ Place corner_push(const TissueContactArguments& c, const TouchVertex& vertex,
-                                             const float4& at, const TouchPush& push, std::uint32_t b)
+/// What a moment on a vertex's normal [N m] exerts on its voxel: physics::normal_forces().
+__device__ __forceinline__ Place normal_push(const TissueContactArguments& c, const TouchVertex& vertex,
+                                             const Place& turn, const float4& dual0, const float4& dual1)
 {
   const Place tangent[2] = { place(vertex.tangent[0]), place(vertex.tangent[1]) };
-  const Place along = physics::normal_forces(push.turn, place(push.dual[0]), place(push.dual[1]), tangent,
-                                             Place{ c.inverse_spacing[0], c.inverse_spacing[1], c.inverse_spacing[2] });
-  return physics::surface_node_force(physics::SideWeights<float>(at.x, at.y, at.z), static_cast<int>(b), push.force,
-                                     along, place(push.normal));
+  return physics::normal_forces(turn, place(dual0), place(dual1), tangent,
+                                Place{ c.inverse_spacing[0], c.inverse_spacing[1], c.inverse_spacing[2] });
 }
 
-/// The same for the forces in TissueContactArguments::sums.
+/// Force of a vertex on corner b of its voxel [N], from the forces in TissueContactArguments::sums.
 __device__ __forceinline__ Place corner_push(const TissueContactArguments& c, std::uint32_t v, std::uint32_t b)
 {
   const TouchSum sum = c.sums[v];
@@ -230,9 +221,11 @@ __device__ __forceinline__ Place corner_push(const TissueContactArguments& c, st
                                        static_cast<float>(static_cast<long long>(units[1])),
                                        static_cast<float>(static_cast<long long>(units[2])) };
   };
-  return corner_push(
-      c, c.vertices[v], c.bound.coordinates[v],
-      { in_newton(sum.force), c.edge * in_newton(sum.turn), c.normal[v], { c.dual[2 * v], c.dual[2 * v + 1] } }, b);
+  const float4 at = c.bound.coordinates[v];
+  return physics::surface_node_force(
+      physics::SideWeights<float>(at.x, at.y, at.z), static_cast<int>(b), in_newton(sum.force),
+      normal_push(c, c.vertices[v], c.edge * in_newton(sum.turn), c.dual[2 * v], c.dual[2 * v + 1]),
+      place(c.normal[v]));
 }
 
 }  // namespace cuda

@@ -106,8 +106,8 @@ constexpr std::uint32_t touch_mark = 0x80000000u, touch_words = 3;
 /// Sums per vertex of a patch: components of the force and of the moment on the normal.
 constexpr std::uint32_t touch_components = 6;
 /// Words of 16 bytes of shared memory for each vertex of a patch: five, `touch_ahead` entries of its list, each of four
-/// words and a number of 4 bytes, and the sums.
-constexpr std::uint32_t touch_ahead = 3, touch_room = 5 + 4 * touch_ahead + (touch_components + touch_ahead + 3) / 4;
+/// words and a number of 4 bytes, the sums, and at least one number more.
+constexpr std::uint32_t touch_ahead = 3, touch_room = 5 + 4 * touch_ahead + (touch_components + touch_ahead + 4) / 4;
 
 /// Contact of tissue with itself in device memory. Vertices are sorted by voxel. The pairs of vertex v are entries 2 v
 /// and 2 v + 1.
