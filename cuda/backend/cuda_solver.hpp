@@ -45,6 +45,7 @@ public:
   Work work(bool open) override;
   void add_energies(bool open, NodalVectors& forces, EnergyLedger& ledger) override;
   std::vector<Reaction> reactions() const override;
+  std::vector<RigidTransform> bodies() const override;
   std::int64_t lost_points() const override;
   void skin(SkinState& out) override;
 

@@ -83,7 +83,7 @@ void CudaSolver::stage(const StepPlan& plan, const std::vector<float>& relaxatio
   g.frequency_bound = reinterpret_cast<std::uint32_t*>(controls);
   if (!bodies.empty())
   {
-    g.contact.poses = reinterpret_cast<const float4*>(controls + bodies_at);
+    g.contact.poses = reinterpret_cast<float4*>(controls + bodies_at);
     g.contact.ways = reinterpret_cast<const float*>(controls + bodies_at) + (bodies.size() - poses.size());
   }
   g.activation_begin = reinterpret_cast<const float*>(controls + activation_at);
@@ -304,6 +304,16 @@ std::vector<Reaction> CudaSolver::reactions() const
     for (const Reaction& reaction : part->reactions())
       all.push_back(reaction);
   }
+  return all;
+}
+
+std::vector<RigidTransform> CudaSolver::bodies() const
+{
+  synchronise();
+  std::vector<RigidTransform> all;
+  for (const auto& part : device_.parts())
+    for (const RigidTransform& pose : part->bodies(conditions_.bone))
+      all.push_back(pose);
   return all;
 }
 

@@ -28,12 +28,11 @@ std::uint32_t most_touching_points(const Model& model, const VoxelPatches& patch
 
 DeviceBodyContact::DeviceBodyContact(const Model& model, const Discretisation& discretisation, const VoxelCut& cut,
                                      const std::vector<std::uint32_t>& device_node)
-    : host_(model, discretisation), first_point_(model.voxels.size() + 1, 0), far_corner_(far_corner(model))
+    : model_(model),
+      host_(model, discretisation),
+      first_point_(model.voxels.size() + 1, 0),
+      far_corner_(far_corner(model))
 {
-  for (const Contact& contact : model.contacts)
-    if (contact.mass > 0)
-      throw BackendUnavailable("backend cuda: body " + contact.name +
-                               " is pushed, which is computed on the CPU alone so far");
   for (const auto& point : host_.points())
     ++first_point_[point.voxel + 1];
   std::partial_sum(first_point_.begin(), first_point_.end(), first_point_.begin());
@@ -42,6 +41,7 @@ DeviceBodyContact::DeviceBodyContact(const Model& model, const Discretisation& d
   else
     add_to_strips(model, device_node);
   add_points(model);
+  add_pushed(model);
   for (auto* const state : { &grips_, &forces_, &arms_, &clearances_ })
     *state = DeviceArray<float4>(point_.size());
   clearances_.clear();
@@ -128,6 +128,16 @@ void DeviceBodyContact::add_points(const Model& model)
   samples_ = DeviceArray<float4>(samples);
 }
 
+void DeviceBodyContact::add_pushed(const Model& model)
+{
+  for (std::size_t b = 0; b < model.contacts.size(); ++b)
+    if (model.contacts[b].mass > 0)
+      host_pushed_.push_back({ pushed_body(model.contacts[b]), static_cast<std::int32_t>(b) });
+  pushed_ = DeviceArray<PushedBody>(host_pushed_);
+  motions_ = DeviceArray<PushedMotion>(host_pushed_.size());
+  reactions_ = DeviceArray<Vector>(host_pushed_.size() * find_pushes_blocks(static_cast<std::uint32_t>(point_.size())));
+}
+
 void DeviceBodyContact::describe(StepArguments& g) const
 {
   g.contact = { bodies_.data(),
@@ -154,6 +164,7 @@ void DeviceBodyContact::describe(StepArguments& g) const
 std::vector<float> DeviceBodyContact::motion(const std::vector<std::vector<RigidTransform>>& bones) const
 {
   std::vector<float> poses, ways;
+  std::vector<Vector> held_at;
   double way = 0;
   for (std::size_t step = 0; step < bones.size(); ++step)
   {
@@ -166,7 +177,14 @@ std::vector<float> DeviceBodyContact::motion(const std::vector<std::vector<Rigid
     }
     way += longest;
     ways.push_back(static_cast<float>(way));
+    for (const PushedBody& pushed : host_pushed_)
+      held_at.push_back(held_centre(model_.contacts[pushed.body], bones[step]));
   }
+  // The kernels read these as numbers in double precision (PushedBodies::held_at).
+  poses.resize(poses.size() + held_at.size() * (sizeof(Vector) / sizeof(float)));
+  if (!held_at.empty())
+    std::memcpy(poses.data() + poses.size() - held_at.size() * (sizeof(Vector) / sizeof(float)), held_at.data(),
+                held_at.size() * sizeof(Vector));
   poses.insert(poses.end(), ways.begin(), ways.end());
   return poses;
 }
@@ -181,6 +199,9 @@ void DeviceBodyContact::list_arrays(ArrayList& list)
   for (auto* const state : { &grips_, &forces_, &arms_ })
     list_state(list, effect, "forces", *state);
   list_state(list, effect, "forces", holds_);
+  list.add(effect, "bodies", pushed_.bytes());
+  list_state(list, effect, "bodies", motions_);
+  list_state(list, effect, "bodies", reactions_);
   host_.list_arrays(list);
 }
 
@@ -196,12 +217,25 @@ void DeviceBodyContact::reset()
   for (auto* const state : { &grips_, &forces_, &arms_ })
     state->clear();
   holds_.clear();
+  motions_.clear();
+  reactions_.clear();
   host_.reset();
 }
 
 void DeviceBodyContact::find_pushes(const StepArguments& g, int step, cudaStream_t stream) const
 {
-  require(launch_find_pushes(g, step, stream), "finding forces of contact");
+  PushedBodies pushed{
+    pushed_.data(),   static_cast<std::uint32_t>(pushed_.size()), 0, g.contact.poses, nullptr, motions_.data(),
+    reactions_.data()
+  };
+  if (pushed.count > 0)
+  {
+    pushed.blocks = static_cast<std::uint32_t>(reactions_.size()) / pushed.count;
+    // motion() puts these values behind the poses of all steps.
+    pushed.held_at =
+        reinterpret_cast<const Vector*>(g.contact.poses + 3 * (std::size_t(g.steps) + 1) * g.contact.body_count);
+  }
+  require(launch_find_pushes(g, pushed, step, stream), "finding forces of contact");
 }
 
 void DeviceBodyContact::follow(const ConstraintStep& step)
@@ -220,7 +254,33 @@ void DeviceBodyContact::follow(const ConstraintStep& step)
   std::vector<HostContact::Found> found;
   for (std::size_t p = 0; p < copy_.size(); ++p)
     found.push_back(found_at(left, copy_[p], host_.points()[p]));
-  host_.follow(found, step);
+  std::vector<PushedMotion> motions, of_bodies(host_pushed_.empty() ? 0 : host_bodies_.size());
+  motions_.download(motions);
+  for (std::size_t i = 0; i < motions.size(); ++i)
+    of_bodies[host_pushed_[i].body] = motions[i];
+  host_.follow(found, step, of_bodies);
+}
+
+std::vector<RigidTransform> DeviceBodyContact::bodies(const std::vector<RigidTransform>& bones) const
+{
+  std::vector<PushedMotion> motions;
+  std::vector<Vector> reactions;
+  motions_.download(motions);
+  reactions_.download(reactions);
+  std::vector<RigidTransform> poses;
+  for (const Contact& contact : model_.contacts)
+    poses.push_back(held_pose(contact, bones));
+  for (std::size_t i = 0; i < motions.size(); ++i)
+  {
+    const auto first = reactions.begin() + static_cast<std::ptrdiff_t>(i * reactions.size() / motions.size());
+    const auto last = first + static_cast<std::ptrdiff_t>(reactions.size() / motions.size());
+    const Vector reaction = std::accumulate(first, last, Vector{ 0, 0, 0 });
+    const PushedBody& pushed = host_pushed_[i];
+    const Contact& contact = model_.contacts[pushed.body];
+    poses[pushed.body] =
+        pushed_pose(contact, moved_on(pushed.law, motions[i], reaction, held_centre(contact, bones)), bones);
+  }
+  return poses;
 }
 
 std::int64_t DeviceBodyContact::lost_points() const

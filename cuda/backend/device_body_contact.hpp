@@ -4,6 +4,7 @@
 #include "cuda/backend/device_bound_points.hpp"
 #include "cuda/backend/device_fields.hpp"
 #include "cuda/backend/device_part.hpp"
+#include "cuda/kernels/pushed_bodies.hpp"
 
 namespace frontalis
 {
@@ -34,16 +35,22 @@ public:
   }
   void follow(const ConstraintStep& step) override;
   std::vector<Reaction> reactions() const override { return host_.reactions(); }
+  std::vector<RigidTransform> bodies(const std::vector<RigidTransform>& bones) const override;
   std::int64_t lost_points() const override;
   std::vector<float> motion(const std::vector<std::vector<RigidTransform>>& bones) const override;
   void add_energies(const std::vector<double> (&u)[3], const std::vector<RigidTransform>& bones, bool open,
                     Vectors& forces, EnergyLedger& ledger) override;
 
 private:
+  using Vector = HostContact::Vector;
+  using PushedMotion = HostContact::PushedMotion;
+
+  void add_pushed(const Model& model);
   void add_points(const Model& model);
   void add_to_patches(const VoxelPatches& patches);
   void add_to_strips(const Model& model, const std::vector<std::uint32_t>& device_node);
 
+  const Model& model_;
   HostContact host_;
   // first point of each voxel among the host's points; the last entry is their number
   std::vector<std::uint32_t> first_point_;
@@ -61,6 +68,11 @@ private:
   DeviceArray<float4> watched_, samples_, clearances_;
   DeviceArray<float4> grips_, forces_, arms_;
   DeviceArray<ContactHold> holds_;
+  // Of bodies that are pushed; see PushedBodies.
+  std::vector<PushedBody> host_pushed_;
+  DeviceArray<PushedBody> pushed_;
+  DeviceArray<PushedMotion> motions_;
+  DeviceArray<Vector> reactions_;
 };
 
 }  // namespace cuda

@@ -17,6 +17,9 @@ namespace cuda
 
 struct VoxelCut;
 
+/// Whether the parts of a model run in strips only: bodies that are pushed do.
+bool need_strips(const Model& model);
+
 /// The part of the GPU backend for an effect whose forces act on points that are bound to voxels, such as contact. Host
 /// backends have NodePart for this. With strips, kernels find the forces before each step. With patches, the patch
 /// kernel finds them within its steps, unless has_kernels() is true.
@@ -32,7 +35,8 @@ public:
   virtual void describe(StepArguments& g) const = 0;
 
   /// Returns the motion of bodies in the steps of a plan: the entries of ContactArguments::poses, then those of
-  /// ContactArguments::ways. Empty if there are no bodies. `bones`: poses of the bones at the start of each step.
+  /// PushedBodies::held_at and of ContactArguments::ways. Empty if there are no bodies. `bones`: poses of the bones at
+  /// the start of each step.
   virtual std::vector<float> motion(const std::vector<std::vector<RigidTransform>>& /*bones*/) const { return {}; }
 
   /// Called before the steps of a plan.
@@ -50,6 +54,8 @@ public:
   /// Passes the latest step on to the host's account. Called after each step if energies are requested.
   virtual void follow(const ConstraintStep& /*step*/) {}
   virtual std::vector<Reaction> reactions() const { return {}; }
+  /// See NodePart::bodies. follow() need not have been called.
+  virtual std::vector<RigidTransform> bodies(const std::vector<RigidTransform>& /*bones*/) const { return {}; }
   /// See NodePart::lost_points. follow() need not have been called.
   virtual std::int64_t lost_points() const { return 0; }
   /// See NodePart::add_energies.

@@ -9,6 +9,12 @@ namespace frontalis
 namespace cuda
 {
 
+bool need_strips(const Model& model)
+{
+  return std::any_of(model.contacts.begin(), model.contacts.end(),
+                     [](const Contact& contact) { return contact.mass > 0; });
+}
+
 std::vector<std::unique_ptr<DevicePart>> device_parts(const Model& model, const Discretisation& discretisation,
                                                       const VoxelCut& cut,
                                                       const std::vector<std::uint32_t>& device_node)

@@ -64,8 +64,11 @@ CutChoice choose_cut(const Model& model, Effects effects)
   const int processors = multiprocessors();
   CutChoice cut;
   cut.patch_bytes = bytes_for_patches();
-  cut.patches = { processors, from_environment("FRONTALIS_CUDA_PATCHES",
-                                               expected_turns(model, processors, cut.patch_bytes), 0, most_turns) };
+  const int turns = need_strips(model)
+                        ? 0
+                        : from_environment("FRONTALIS_CUDA_PATCHES", expected_turns(model, processors, cut.patch_bytes),
+                                           0, most_turns);
+  cut.patches = { processors, turns };
   // All strips should run at the same time, because a few that start later would double the time.
   cut.most_strips = static_cast<std::size_t>(strip_blocks(effects)) * (step_block / 32) * processors;
   cut.strips.rows = strip_rows(effects);

@@ -15,6 +15,10 @@ namespace cuda
 /// Number of units of force (TissueContactArguments::sums) in the force of the stiffest vertex at a depth of one voxel
 /// edge. A unit is below the rounding error of a single number, and sums may be 2^19 times as large as that force.
 constexpr double touch_units_in_force = 1LL << 44;
+/// The same within patches. A unit corresponds to a depth of 1.5e-8 voxel edges, less than the rounding error of a
+/// gap, and sums may be 32 times as large as that force. A pair pushes with at most a few times that force, because a
+/// point that is deeper than one edge is let go.
+constexpr double touch_units_in_patches = 1LL << 26;
 
 /// The constant arrays of contact of tissue with itself, on the host.
 struct TouchTables
@@ -91,7 +95,9 @@ inline TouchTables::TouchTables(const Model& model, const Discretisation& discre
   sizes.edge = static_cast<float>(surface.edge);
   for (std::size_t axis = 0; axis < 3; ++axis)
     sizes.inverse_spacing[axis] = static_cast<float>(1 / model.spacing[axis]);
-  sizes.per_newton = static_cast<float>(touch_units_in_force / std::max(stiffest * surface.edge, 1e-12));
+  const double largest_force = std::max(stiffest * surface.edge, 1e-12);
+  sizes.per_newton = static_cast<float>(touch_units_in_force / largest_force);
+  sizes.in_patches.per_newton = static_cast<float>(touch_units_in_patches / largest_force);
   const auto largest = static_cast<float>(radius);
   std::memcpy(&rest.radius, &largest, sizeof largest);
 }

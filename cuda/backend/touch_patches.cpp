@@ -36,7 +36,9 @@ std::size_t voxels_in(const VoxelPatches& cut)
 }  // namespace
 
 TouchPatchTables::TouchPatchTables(const TouchTables& tables, const VoxelPatches& cut)
-    : slide(static_cast<float>(near_vertex) * tables.sizes.edge), vertices(tables.vertices.size())
+    : slide(static_cast<float>(near_vertex) * tables.sizes.edge),
+      per_newton(tables.sizes.in_patches.per_newton),
+      vertices(tables.vertices.size())
 {
   add_vertices(tables, cut);
   add_near(tables);
@@ -147,12 +149,13 @@ void TouchPatchTables::add_near(const TouchTables& tables)
 
 DeviceTouchPatches::DeviceTouchPatches(const TouchPatchTables& tables)
     : slide_(tables.slide),
+      per_newton_(tables.per_newton),
       patches_(tables.patches),
       corners_(tables.corners),
       vertex_of_(tables.vertex_of),
       near_begin_(tables.near_begin),
       watch_begin_(tables.watch_begin),
-      counts_(tables.patches.size()),
+      counts_(2 * tables.patches.size()),
       lists_(tables.patches.size() * tables.vertices),
       entry_vertex_(tables.most_entries),
       voxels_(tables.voxels),
@@ -187,6 +190,7 @@ TouchPatches DeviceTouchPatches::view() const
            near_begin_.data(),
            near_.data(),
            slide_,
+           per_newton_,
            counts_.data(),
            lists_.data(),
            entries_.data(),

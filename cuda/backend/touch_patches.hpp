@@ -25,7 +25,7 @@ struct TouchPatchTables
   std::vector<std::uint16_t> near;
   std::vector<std::uint32_t> watch_begin;
   std::vector<std::uint16_t> watched;
-  float slide;
+  float slide, per_newton;
   std::size_t vertices;
   std::size_t most_entries = 0;  ///< number of entries that all lists together can have
 
@@ -43,7 +43,7 @@ public:
   std::size_t bytes() const;
 
 private:
-  float slide_;
+  float slide_, per_newton_;
   DeviceArray<TouchPatch> patches_;
   DeviceArray<uint4> corners_;
   DeviceArray<std::uint32_t> vertex_of_, near_begin_, watch_begin_, counts_, lists_, entry_vertex_;

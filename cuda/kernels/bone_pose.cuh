@@ -29,6 +29,14 @@ struct BodyPose
   {
     return v + v.x * less[0] + v.y * less[1] + v.z * less[2];
   }
+  /// Vector from the present origin of the body's frame to the origin at rest.
+  __device__ __forceinline__ physics::Vec3<float> back_to_rest(const physics::Vec3<double>& middle) const
+  {
+    const physics::Vec3<float> at{ static_cast<float>(middle.x + double(shift.x)),
+                                   static_cast<float>(middle.y + double(shift.y)),
+                                   static_cast<float>(middle.z + double(shift.z)) };
+    return shift + at.x * less[0] + at.y * less[1] + at.z * less[2];
+  }
   /// Turns a vector from the scene's frame to the body's.
   __device__ __forceinline__ physics::Vec3<float> turned_back(const physics::Vec3<float>& v) const
   {

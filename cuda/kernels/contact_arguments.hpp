@@ -16,7 +16,7 @@ struct ContactBody
   float inverse_spacing;  ///< 1 over the spacing of the field's samples [1/m]; 0: a sphere
   float reach;            ///< Contact::reach [m]
   float friction;
-  std::int32_t bone;  ///< bone with which the body moves; -1: it stands still
+  std::int32_t bone;  ///< bone with which the body moves; -1: none
   double middle[3];   ///< middle of the points that may touch the body, at rest [m]
 };
 
@@ -67,8 +67,8 @@ struct ContactArguments
 
   // Motion of the bodies in the steps of a plan:
   /// [step][body][3], at the start of the step: rows of the inverse rotation minus the identity, and of the translation
-  /// [m]
-  const float4* poses;
+  /// [m]. Poses of bodies that are pushed are completed when the step begins (PushedBodies).
+  float4* poses;
   const float* ways;  ///< [step]: upper bound of any body's motion relative to the tissue since the plan began [m]
 
   // State. Positions are relative to the rest position, in the frame of the body.

@@ -51,21 +51,15 @@ __device__ __forceinline__ bool distance_at(const ContactArguments& c, std::uint
                        [&](std::uint32_t code) { return aside(enter_contact_cell)(c, index, code); });
 }
 
-/// A point's position relative to the origin of a bone's frame [m].
-__device__ __forceinline__ physics::Vec3<double> from_bone(const StepArguments& g, int step, const ContactBody& body,
-                                                           const ContactPoint& point, const physics::Vec3<float>& moved)
+/// A point's position relative to the origin of its body's frame [m].
+__device__ __forceinline__ physics::Vec3<float> from_body(const StepArguments& g, int step, const ContactBody& body,
+                                                          const ContactPoint& point, const physics::Vec3<float>& moved)
 {
-  double origin[3] = { 0, 0, 0 };
-  if (body.bone >= 0)
-  {
-    const physics::Vec3<float> t = bone_motion_at(g, step, body.bone).displacement_of({ 0, 0, 0 });
-    origin[0] = t.x;
-    origin[1] = t.y;
-    origin[2] = t.z;
-  }
-  return { body.middle[0] + double(point.arm[0]) + double(moved.x) - origin[0],
-           body.middle[1] + double(point.arm[1]) + double(moved.y) - origin[1],
-           body.middle[2] + double(point.arm[2]) + double(moved.z) - origin[2] };
+  const physics::Vec3<double> middle{ body.middle[0], body.middle[1], body.middle[2] };
+  const physics::Vec3<float> back = body_pose_at(g, step, point.body).back_to_rest(middle);
+  return { static_cast<float>(middle.x + double(point.arm[0]) + double(moved.x) + double(back.x)),
+           static_cast<float>(middle.y + double(point.arm[1]) + double(moved.y) + double(back.y)),
+           static_cast<float>(middle.z + double(point.arm[2]) + double(moved.z) + double(back.z)) };
 }
 
 /// A point of contact in one step.
@@ -90,10 +84,9 @@ __device__ __forceinline__ void leave_force(const StepArguments& g, const PointS
 {
   if (!at.last)
     return;
-  const physics::Vec3<double> arm = from_bone(g, at.step, body, point, at.moved);
+  const physics::Vec3<float> arm = from_body(g, at.step, body, point, at.moved);
   g.contact.forces[at.index] = make_float4(force.x, force.y, force.z, lost);
-  g.contact.arms[at.index] =
-      make_float4(static_cast<float>(arm.x), static_cast<float>(arm.y), static_cast<float>(arm.z), 0);
+  g.contact.arms[at.index] = make_float4(arm.x, arm.y, arm.z, 0);
 }
 
 /// Finds the force on a point, which is zero if it does not touch.
@@ -107,18 +100,12 @@ __device__ __forceinline__ Push find_push(const StepArguments& g, const ContactP
   const float4 held = c.grips[at.index], clear = c.clearances[at.index];
   ContactHold hold = c.holds[at.index];
   const ContactBody& body = c.bodies[point.body];
-  BodyPose pose{};
-  Place gone = at.moved;
-  if (body.bone >= 0)
-  {
-    pose = body_pose_at(g, at.step, point.body);
-    gone = pose.gone({ point.arm[0], point.arm[1], point.arm[2] }, at.moved);
-  }
+  const BodyPose pose = body_pose_at(g, at.step, point.body);
+  const Place gone = pose.gone({ point.arm[0], point.arm[1], point.arm[2] }, at.moved);
   const Place away = gone - Place{ clear.x, clear.y, clear.z };
-  const float way = norm(away);
-  const bool far = way < clear.w;
+  const bool far = clear.w > 0 && dot(away, away) < clear.w * clear.w;
   if (far && hold.touching == int(Touching::no) && held.w == 0)
-    return { { 0, 0, 0 }, clear.w - way };
+    return { { 0, 0, 0 }, fmaxf(clear.w - norm(away), 0) };
 
   physics::Grip<float> grip{ { held.x, held.y, held.z }, held.w, hold.along };
   const auto response = static_cast<float>(g.friction_response);
@@ -131,7 +118,7 @@ __device__ __forceinline__ Push find_push(const StepArguments& g, const ContactP
     const auto touch = physics::touch<float>(value, gone, grip, point.stiffness, body.friction, response);
     c.grips[at.index] = make_float4(touch.grip.anchor.x, touch.grip.anchor.y, touch.grip.anchor.z, touch.grip.normal);
     c.holds[at.index] = { touch.grip.along, int(Touching::yes) };
-    const Place force = body.bone >= 0 ? pose.turned(touch.force) : touch.force;
+    const Place force = pose.turned(touch.force);
     leave_force(g, at, point, body, force, touch.lost);
     return { force, 0 };
   }

@@ -19,10 +19,10 @@ namespace cuda
 struct TouchMemory
 {
   float4 *moved, *normal, *dual[2], *change;
-  std::int32_t* high;   // upper parts of the sums of forces and moments: [component][vertex]
-  std::uint32_t* low;   // lower parts
-  float4* pairs;        // the first entries of the list: [word of TouchEntry][entry]
-  std::uint32_t* code;  // of these entries: TouchPatches::entry_vertex
+  std::int32_t* sums;     // of forces and moments, in units of TouchPatches: [component][vertex]
+  float4* pairs;          // the first entries of the list: [word of TouchEntry][entry]
+  std::uint32_t* code;    // of these entries: TouchPatches::entry_vertex
+  std::uint32_t* pushed;  // TouchStep::mark of the latest step in which a pair had forces
   std::uint32_t room;
 };
 
@@ -30,7 +30,7 @@ struct TouchMemory
 struct TouchStep
 {
   TouchPatch patch;
-  std::uint32_t count;  ///< length of the patch's list
+  std::uint32_t count, first_others;  ///< length of the patch's list, and place of the first vertex of other patches
   std::uint32_t room, mark, index;
   int buffer;
   bool first, last;  ///< whether the step is the launch's first, last
@@ -39,15 +39,15 @@ struct TouchStep
 __device__ __forceinline__ TouchMemory touch_memory(const PatchMemory& memory, std::uint32_t room)
 {
   float4* const first = memory.touch;
-  std::int32_t* const high = reinterpret_cast<std::int32_t*>(first + 5 * room);
   return { first,
            first + room,
            { first + 2 * room, first + 3 * room },
            first + 4 * room,
-           high,
-           reinterpret_cast<std::uint32_t*>(high + 6 * room),
-           first + 8 * room,
-           reinterpret_cast<std::uint32_t*>(first + (8 + 4 * touch_ahead) * room),
+           reinterpret_cast<std::int32_t*>(first + (5 + 4 * touch_ahead) * room),
+           first + 5 * room,
+           reinterpret_cast<std::uint32_t*>(first + (5 + 4 * touch_ahead) * room) + touch_components * room,
+           reinterpret_cast<std::uint32_t*>(first + (5 + 4 * touch_ahead) * room) +
+               (touch_components + touch_ahead) * room,
            room };
 }
 
@@ -55,8 +55,10 @@ __device__ __forceinline__ TouchMemory touch_memory(const PatchMemory& memory, s
 __device__ __forceinline__ void clear_touch(const StepLaunch& launch, const PatchMemory& memory)
 {
   const TouchMemory own = touch_memory(memory, launch.room.touch_vertices);
-  for (std::uint32_t i = threadIdx.x; i < 12 * own.room; i += blockDim.x)
-    own.high[i] = 0;
+  for (std::uint32_t i = threadIdx.x; i < touch_components * own.room; i += blockDim.x)
+    own.sums[i] = 0;
+  if (threadIdx.x == 0 && own.room > 0)
+    *own.pushed = 0;
 }
 
 __device__ __forceinline__ TouchStep fetch_touch(const StepArguments& g, const StepLaunch& launch, std::uint32_t p,
@@ -67,7 +69,8 @@ __device__ __forceinline__ TouchStep fetch_touch(const StepArguments& g, const S
   if (in.patches == nullptr || g.forces_only)
     return touch;
   touch.patch = in.patches[p];
-  touch.count = in.counts[p];
+  touch.first_others = in.counts[2 * p];
+  touch.count = touch.first_others + in.counts[2 * p + 1];
   touch.room = launch.room.touch_vertices;
   touch.mark = mark(g, step);
   touch.index = p;
@@ -86,7 +89,7 @@ __device__ __forceinline__ void await_touch(const StepArguments& g, const TouchS
   const std::uint32_t end = in.watch_begin[touch.index + 1];
   // The first threads wait for nodes.
   for (std::uint32_t i = in.watch_begin[touch.index] + blockDim.x - 1 - threadIdx.x; i < end; i += blockDim.x)
-    if (const std::uint32_t patch = __ldg(in.watched + i); in.counts[patch] > 0)
+    if (const std::uint32_t patch = __ldg(in.watched + i); in.counts[2 * patch] + in.counts[2 * patch + 1] > 0)
       receive(in.ended[touch.buffer] + patch, touch.mark);
 }
 
@@ -143,7 +146,11 @@ template <bool rubs>
 struct PatchTouchView
 {
   using Number = float;
+  using Units = std::int32_t;
   static constexpr float edge_error = TouchView::edge_error;
+
+  static __device__ __forceinline__ Units units(float x) { return __float2int_rn(x); }
+  __device__ __forceinline__ float per_newton() const { return c.in_patches.per_newton; }
 
   /// Fetches the triangle and the present values of its corners, and at first those of the vertex.
   __device__ __forceinline__ physics::SurfaceTriangle<float> triangle(std::int32_t t)
@@ -242,7 +249,8 @@ __device__ __forceinline__ TouchPair touch_pair(const float4& a, const float4& b
 __device__ __forceinline__ std::uint32_t touch_entry(const TissueContactArguments& c, const TouchStep& touch,
                                                      std::uint32_t place)
 {
-  return c.in_patches.lists[std::size_t(touch.index) * c.vertex_count + place];
+  const std::uint32_t at = place < touch.first_others ? place : c.vertex_count - 1 - (place - touch.first_others);
+  return c.in_patches.lists[std::size_t(touch.index) * c.vertex_count + at];
 }
 
 /// Finds the forces of the pairs in the patch's list, and adds those on the patch's vertices to their sums.
@@ -274,27 +282,26 @@ __device__ __forceinline__ void find_listed(const StepArguments& g, const TouchS
       if (pair.triangle >= 0)
       {
         view.began = pair.began;
-        const auto add = [&](int corner, std::int32_t, const long long(&force)[3], const long long* turn)
+        const auto add = [&](int corner, std::int32_t, const std::int32_t(&force)[3], const Place* turn)
         {
           const std::uint32_t copy = view.copy[corner];
           if (copy == no_touch_copy)
             return;
-          // 64-bit additions in shared memory would be loops. The lower parts of 2^12 numbers add up without overflow.
-          const auto add_part = [&](std::uint32_t component, long long units)
-          {
-            atomicAdd(own.low + component * own.room + copy, static_cast<std::uint32_t>(units) & 0xfffffu);
-            atomicAdd(own.high + component * own.room + copy, static_cast<std::int32_t>(units >> 20));
-          };
+          const auto add_to = [&](std::uint32_t component, std::int32_t units)
+          { atomicAdd(own.sums + component * own.room + copy, units); };
 #pragma unroll
           for (std::uint32_t axis = 0; axis < 3; ++axis)
-          {
-            add_part(axis, force[axis]);
-            if (turn != nullptr)
-              add_part(3 + axis, turn[axis]);
-          }
+            add_to(axis, force[axis]);
+          if (turn == nullptr)
+            return;
+          add_to(3, view.units(turn->x));
+          add_to(4, view.units(turn->y));
+          add_to(5, view.units(turn->z));
         };
         touch_triangle<rubs>(view, v, pair, first, response, add, stored, lost);
         first = pair.triangle;
+        if (pair.held > 0)
+          *own.pushed = touch.mark;
       }
       if (kept)
       {
@@ -322,20 +329,33 @@ __device__ __forceinline__ void find_touch(const StepArguments& g, const TouchSt
     find_listed<false>(g, touch, own);
 }
 
-/// Adds the forces on the patch's vertices to those on the corners of their voxels. Each thread processes a corner of a
-/// voxel. Ends with a barrier.
-__device__ __forceinline__ void add_touch(const StepArguments& g, const TouchStep& touch, const PatchMemory& memory)
+/// Adds the forces on the patch's vertices to those on the corners of their voxels. At first each thread processes a
+/// vertex, then a corner of a voxel. Ends with a barrier.
+__device__ __forceinline__ void add_forces(const TissueContactArguments& c, const TouchStep& touch,
+                                           const PatchMemory& memory, const TouchMemory& own)
 {
-  if (touch.count == 0)
-    return;
-  const TissueContactArguments& c = g.touch;
-  const TouchMemory own = touch_memory(memory, touch.room);
-  const auto sum = [&](std::uint32_t component, std::uint32_t i)
+  const float unit = 1 / c.in_patches.per_newton;
+  for (std::uint32_t i = threadIdx.x; i < touch.patch.vertices; i += blockDim.x)
   {
-    const std::uint32_t at = component * own.room + i;
-    return static_cast<float>(own.high[at]) * 1048576.0f + static_cast<float>(own.low[at]);
-  };
-  const float unit = 1 / c.per_newton;
+    const std::uint32_t v = __ldg(c.in_patches.vertex_of + touch.patch.vertex_begin + i) & ~touch_mark;
+    const float4 at = __ldg(c.bound.coordinates + v);
+    float sum[touch_components];
+#pragma unroll
+    for (std::uint32_t component = 0; component < touch_components; ++component)
+    {
+      std::int32_t& units = own.sums[component * own.room + i];
+      sum[component] = static_cast<float>(units);
+      units = 0;
+    }
+    const Place force = unit * Place{ sum[0], sum[1], sum[2] };
+    const Place along = normal_push(c, c.vertices[v], (c.edge * unit) * Place{ sum[3], sum[4], sum[5] }, own.dual[0][i],
+                                    own.dual[1][i]);
+    // From here on, the words of the dual vectors have the forces, and the last components the place in the voxel.
+    own.dual[0][i] = make_float4(force.x, force.y, force.z, at.x);
+    own.dual[1][i] = make_float4(along.x, along.y, along.z, at.y);
+    own.normal[i].w = at.z;
+  }
+  __syncthreads();
   for (std::uint32_t i = threadIdx.x; i < 8 * touch.patch.voxels; i += blockDim.x)
   {
     const BoundVoxel voxel = c.in_patches.voxels[touch.patch.voxel_begin + i / 8];
@@ -343,12 +363,9 @@ __device__ __forceinline__ void add_touch(const StepArguments& g, const TouchSte
     Place force{ 0, 0, 0 };
     for (std::uint32_t p = voxel.first; p < voxel.end; ++p)
     {
-      const std::uint32_t v = __ldg(c.in_patches.vertex_of + touch.patch.vertex_begin + p) & ~touch_mark;
-      const TouchPush push{ unit * Place{ sum(0, p), sum(1, p), sum(2, p) },
-                            (c.edge * unit) * Place{ sum(3, p), sum(4, p), sum(5, p) },
-                            own.normal[p],
-                            { own.dual[0][p], own.dual[1][p] } };
-      force = force + corner_push(c, c.vertices[v], __ldg(c.bound.coordinates + v), push, b);
+      const float4 on = own.dual[0][p], along = own.dual[1][p], normal = own.normal[p];
+      force = force + physics::surface_node_force(physics::SideWeights<float>(on.w, along.w, normal.w),
+                                                  static_cast<int>(b), place(on), place(along), place(normal));
     }
     float* const to = memory.force + 3 * b * memory.width + voxel.column;
     // Internal forces have the opposite sign.
@@ -357,8 +374,17 @@ __device__ __forceinline__ void add_touch(const StepArguments& g, const TouchSte
     to[2 * memory.width] -= force.z;
   }
   __syncthreads();
-  for (std::uint32_t i = threadIdx.x; i < 12 * own.room; i += blockDim.x)
-    own.high[i] = 0;
+}
+
+/// Adds the forces of find_touch(), and tells other patches that this one has ended the step.
+__device__ __forceinline__ void add_touch(const StepArguments& g, const TouchStep& touch, const PatchMemory& memory)
+{
+  if (touch.count == 0)
+    return;
+  const TissueContactArguments& c = g.touch;
+  const TouchMemory own = touch_memory(memory, touch.room);
+  if (*own.pushed == touch.mark)
+    add_forces(c, touch, memory, own);
   if (threadIdx.x == 0 && !touch.last)
   {
     const float nothing[3] = { 0, 0, 0 };

@@ -5,6 +5,8 @@
 #include "frontalis/physics/surface_vertex.hpp"
 #include "solver/contact/touch_search.hpp"
 
+#include <type_traits>
+
 namespace frontalis
 {
 namespace cuda
@@ -21,7 +23,11 @@ __device__ __forceinline__ float4 word(const Place& a) { return make_float4(a.x,
 struct TouchView
 {
   using Number = float;
+  using Units = long long;                    // whole numbers in which forces are added
   static constexpr float edge_error = 3e-5F;  // above the rounding errors of a foot
+
+  static __device__ __forceinline__ Units units(float x) { return __float2ll_rn(x); }
+  __device__ __forceinline__ float per_newton() const { return c.per_newton; }
 
   __device__ __forceinline__ Place rest_apart(std::int32_t v, std::int32_t w) const
   {
@@ -99,9 +105,9 @@ __device__ __forceinline__ void place_touching(const TissueContactArguments& c, 
 }
 
 /// Finds the forces of a pair of vertex p and updates the pair. Calls add(i, vertex, force, turn) with the force on
-/// each of the four vertices and the moment on its normal, in whole units: i is the triangle's corner, or 3 for p, for
-/// which `turn` is null. `first`: the triangle of p's other pair, if that has been computed. `response`:
-/// physics::friction_response(). Adds to the energies `stored` and `lost` [J].
+/// each of the four vertices, in View::Units, and the moment on its normal, which is still to be rounded to such units:
+/// i is the triangle's corner, or 3 for p, for which `turn` is null. `first`: the triangle of p's other pair, if that
+/// has been computed. `response`: physics::friction_response(). Adds to the energies `stored` and `lost` [J].
 template <bool rubs, class View, class Add>
 __device__ __forceinline__ void touch_triangle(View&& view, std::int32_t p, TouchPair& pair, std::int32_t first,
                                                float response, const Add& add, float& stored, float& lost)
@@ -144,17 +150,17 @@ __device__ __forceinline__ void touch_triangle(View&& view, std::int32_t p, Touc
   lost += force.lost;
   if (!(stiffness > 0))
     return;
-  long long sum[3] = { 0, 0, 0 };
-  const float per_moment = c.per_newton / c.edge;
+  using Units = typename std::remove_reference_t<View>::Units;
+  Units sum[3] = { 0, 0, 0 };
+  const float per_newton = view.per_newton(), per_moment = per_newton / c.edge;
   FRONTALIS_UNROLL
   for (int i = 0; i < 3; ++i)
   {
-    const Place on = c.per_newton * force.corner[i], turned = per_moment * force.turn[i];
-    const long long units[3] = { __float2ll_rn(on.x), __float2ll_rn(on.y), __float2ll_rn(on.z) };
-    const long long turn[3] = { __float2ll_rn(turned.x), __float2ll_rn(turned.y), __float2ll_rn(turned.z) };
+    const Place on = per_newton * force.corner[i], turned = per_moment * force.turn[i];
+    const Units units[3] = { view.units(on.x), view.units(on.y), view.units(on.z) };
     for (int axis = 0; axis < 3; ++axis)
       sum[axis] -= units[axis];
-    add(i, corners.vertex[i], units, turn);
+    add(i, corners.vertex[i], units, &turned);
   }
   add(3, p, sum, nullptr);
 }
@@ -169,14 +175,15 @@ __device__ __forceinline__ void touch_triangles(const TissueContactArguments& c,
   TouchPair* const pairs = c.pairs + 2 * std::size_t(v);
   const TouchPair both[2] = { pairs[0], pairs[1] };
   wait();
-  const auto add = [&](int, std::int32_t to, const long long(&force)[3], const long long* turn)
+  const auto add = [&](int, std::int32_t to, const long long(&force)[3], const Place* turn)
   {
     for (int axis = 0; axis < 3; ++axis)
-    {
       atomicAdd(&c.sums[to].force[axis], static_cast<unsigned long long>(force[axis]));
-      if (turn != nullptr)
-        atomicAdd(&c.sums[to].turn[axis], static_cast<unsigned long long>(turn[axis]));
-    }
+    if (turn == nullptr)
+      return;
+    atomicAdd(&c.sums[to].turn[0], static_cast<unsigned long long>(TouchView::units(turn->x)));
+    atomicAdd(&c.sums[to].turn[1], static_cast<unsigned long long>(TouchView::units(turn->y)));
+    atomicAdd(&c.sums[to].turn[2], static_cast<unsigned long long>(TouchView::units(turn->z)));
   };
   float stored = 0, lost = 0;
   std::int32_t first = -1;
@@ -195,25 +202,16 @@ __device__ __forceinline__ void touch_triangles(const TissueContactArguments& c,
     c.stored[v] = stored;
 }
 
-/// A vertex's force [N], the moment on its normal [N m], and what they act on.
-struct TouchPush
-{
-  Place force, turn;
-  float4 normal, dual[2];
-};
-
-/// Force of a vertex on corner b of its voxel [N]. `at`: coordinates in the voxel.
-__device__ __forceinline__ Place corner_push(const TissueContactArguments& c, const TouchVertex& vertex,
-                                             const float4& at, const TouchPush& push, std::uint32_t b)
+/// What a moment on a vertex's normal [N m] exerts on its voxel: physics::normal_forces().
+__device__ __forceinline__ Place normal_push(const TissueContactArguments& c, const TouchVertex& vertex,
+                                             const Place& turn, const float4& dual0, const float4& dual1)
 {
   const Place tangent[2] = { place(vertex.tangent[0]), place(vertex.tangent[1]) };
-  const Place along = physics::normal_forces(push.turn, place(push.dual[0]), place(push.dual[1]), tangent,
-                                             Place{ c.inverse_spacing[0], c.inverse_spacing[1], c.inverse_spacing[2] });
-  return physics::surface_node_force(physics::SideWeights<float>(at.x, at.y, at.z), static_cast<int>(b), push.force,
-                                     along, place(push.normal));
+  return physics::normal_forces(turn, place(dual0), place(dual1), tangent,
+                                Place{ c.inverse_spacing[0], c.inverse_spacing[1], c.inverse_spacing[2] });
 }
 
-/// The same for the forces in TissueContactArguments::sums.
+/// Force of a vertex on corner b of its voxel [N], from the forces in TissueContactArguments::sums.
 __device__ __forceinline__ Place corner_push(const TissueContactArguments& c, std::uint32_t v, std::uint32_t b)
 {
   const TouchSum sum = c.sums[v];
@@ -223,9 +221,11 @@ __device__ __forceinline__ Place corner_push(const TissueContactArguments& c, st
                                        static_cast<float>(static_cast<long long>(units[1])),
                                        static_cast<float>(static_cast<long long>(units[2])) };
   };
-  return corner_push(
-      c, c.vertices[v], c.bound.coordinates[v],
-      { in_newton(sum.force), c.edge * in_newton(sum.turn), c.normal[v], { c.dual[2 * v], c.dual[2 * v + 1] } }, b);
+  const float4 at = c.bound.coordinates[v];
+  return physics::surface_node_force(
+      physics::SideWeights<float>(at.x, at.y, at.z), static_cast<int>(b), in_newton(sum.force),
+      normal_push(c, c.vertices[v], c.edge * in_newton(sum.turn), c.dual[2 * v], c.dual[2 * v + 1]),
+      place(c.normal[v]));
 }
 
 }  // namespace cuda

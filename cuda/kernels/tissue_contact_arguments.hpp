@@ -89,7 +89,10 @@ struct TouchPatches
   /// A triangle is near a vertex if one of its corners is at rest within this distance [m]. In the steps of
   /// a plan, pairs reach triangles that are near TouchPair::began.
   float slide;
-  std::uint32_t* counts;        ///< per patch: length of its list
+  float per_newton;  ///< number of units of force in 1 N; sums have 32 bits
+  /// per patch: number of the vertices in its list that it has, and of others. The first are at the beginning of the
+  /// list, the others at its end, so that the pairs of a warp push the same of their vertices.
+  std::uint32_t* counts;
   std::uint32_t* lists;         ///< [patch][place in the list]: entry, at a stride of the number of vertices
   TouchEntry* entries;          ///< of all lists
   std::uint32_t* entry_vertex;  ///< of each entry: the vertex; bit 31: this entry's state is the one that is kept
@@ -100,8 +103,11 @@ struct TouchPatches
 };
 constexpr std::uint16_t no_touch_copy = 0xffff;
 constexpr std::uint32_t touch_mark = 0x80000000u, touch_words = 3;
-/// Words of 16 bytes of shared memory for each vertex of a patch, including `touch_ahead` entries of its list.
-constexpr std::uint32_t touch_ahead = 3, touch_room = 8 + 5 * touch_ahead;
+/// Sums per vertex of a patch: components of the force and of the moment on the normal.
+constexpr std::uint32_t touch_components = 6;
+/// Words of 16 bytes of shared memory for each vertex of a patch: five, `touch_ahead` entries of its list, each of four
+/// words and a number of 4 bytes, the sums, and at least one number more.
+constexpr std::uint32_t touch_ahead = 3, touch_room = 5 + 4 * touch_ahead + (touch_components + touch_ahead + 4) / 4;
 
 /// Contact of tissue with itself in device memory. Vertices are sorted by voxel. The pairs of vertex v are entries 2 v
 /// and 2 v + 1.

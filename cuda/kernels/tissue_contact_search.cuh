@@ -27,7 +27,7 @@ __device__ __forceinline__ void clear_grid(const TissueContactArguments& c, std:
   for (std::uint32_t b = first; b <= c.bucket_mask; b += stride)
     c.heads[b] = -1;
   if (c.in_patches.patches != nullptr)
-    for (std::uint32_t p = first; p < c.in_patches.patch_count; p += stride)
+    for (std::uint32_t p = first; p < 2 * c.in_patches.patch_count; p += stride)
       c.in_patches.counts[p] = 0;
 }
 
@@ -192,24 +192,51 @@ __device__ __forceinline__ void each_list(const TissueContactArguments& c, std::
   }
 }
 
-/// Adds a vertex to the lists that must have it.
+/// Adds a vertex to the lists that must have it. Places in several lists are asked for at once, because each answer
+/// takes long.
 __device__ __forceinline__ void list_vertex(const TissueContactArguments& c, std::uint32_t v)
 {
-  TouchPair* const pairs = c.pairs + 2 * std::size_t(v);
+  constexpr std::uint32_t most = 4;
+  const TouchPatches& in = c.in_patches;
+  const TouchPair* const pairs = c.pairs + touch_search::most_pairs * std::size_t(v);
+  std::uint32_t patch[most], count = 0;
+  const auto add = [&]
+  {
+    const std::uint32_t first = atomicAdd(&c.control->entries, count);
+    std::uint32_t place[most], copy[most];
+#pragma unroll
+    for (std::uint32_t i = 0; i < most; ++i)
+      copy[i] = i < count ? in.copy_of[std::size_t(patch[i]) * c.vertex_count + v] : no_touch_copy;
+#pragma unroll
+    for (std::uint32_t i = 0; i < most; ++i)
+      if (i < count)
+      {
+        const bool has = copy[i] != no_touch_copy;
+        place[i] = atomicAdd(in.counts + 2 * patch[i] + (has ? 0 : 1), 1u);
+        place[i] = has ? place[i] : c.vertex_count - 1 - place[i];
+      }
+#pragma unroll
+    for (std::uint32_t i = 0; i < most; ++i)
+      if (i < count)
+      {
+        const bool keeps =
+            copy[i] != no_touch_copy && (in.vertex_of[in.patches[patch[i]].vertex_begin + copy[i]] & touch_mark) != 0;
+        in.lists[std::size_t(patch[i]) * c.vertex_count + place[i]] = first + i;
+        in.entry_vertex[first + i] = v | (keeps ? touch_mark : 0);
+        for (int k = 0; k < touch_search::most_pairs; ++k)
+          in.entries[first + i].pair[k] = pairs[k];
+      }
+    count = 0;
+  };
   each_list(c, v, pairs,
-            [&](std::uint32_t patch)
+            [&](std::uint32_t p)
             {
-              const TouchPatches& in = c.in_patches;
-              const std::uint32_t entry = atomicAdd(&c.control->entries, 1u);
-              const std::uint32_t place = atomicAdd(in.counts + patch, 1u);
-              const std::uint16_t copy = in.copy_of[std::size_t(patch) * c.vertex_count + v];
-              const bool keeps =
-                  copy != no_touch_copy && (in.vertex_of[in.patches[patch].vertex_begin + copy] & touch_mark) != 0;
-              in.lists[std::size_t(patch) * c.vertex_count + place] = entry;
-              in.entry_vertex[entry] = v | (keeps ? touch_mark : 0);
-              for (int k = 0; k < touch_search::most_pairs; ++k)
-                in.entries[entry].pair[k] = pairs[k];
+              patch[count++] = p;
+              if (count == most)
+                add();
             });
+  if (count > 0)
+    add();
 }
 
 /// Ends the search before steps of length dt. Other threads must not use the control at this time.

@@ -54,11 +54,7 @@ void to_face_frame(const Model& model, SkinState& skin)
 std::vector<BodyFrame> bodies_in_face_frame(const Solver& solver, const Model& model)
 {
   const std::vector<Reaction> reactions = solver.reactions();
-  const std::vector<TouchedBody> touched = touched_bodies(model);
-  std::vector<RigidTransform> poses = solver.bodies();
-  // A backend without pushed bodies returns no poses. Its bodies move with their bones.
-  for (std::size_t c = poses.size(); c < reactions.size(); ++c)
-    poses.push_back(touched[c].bone < 0 ? RigidTransform() : solver.controls().bone[touched[c].bone]);
+  const std::vector<RigidTransform> poses = solver.bodies();
   std::vector<BodyFrame> bodies;
   bodies.reserve(reactions.size());
   for (std::size_t c = 0; c < reactions.size(); ++c)

@@ -11,6 +11,7 @@
 #include "device_on_host.hpp"
 
 #include "cuda/kernels/contact_points.cuh"
+#include "cuda/kernels/pushed_bodies.cuh"
 
 using namespace frontalis;
 using namespace frontalis::cuda;
@@ -45,13 +46,18 @@ public:
     g_.contact.points = points_.data();
     g_.contact.point_count = static_cast<std::uint32_t>(points_.size());
     g_.contact.body_count = static_cast<std::uint32_t>(bodies_.size());
+    for (std::size_t b = 0; b < bodies_.size(); ++b)
+      if (model.contacts[b].mass > 0)
+        pushed_.push_back({ pushed_body(model.contacts[b]), static_cast<std::int32_t>(b) });
+    motions_.assign(pushed_.size(), {});
+    // Each point has a block of its own.
+    reactions_.assign(pushed_.size() * points_.size(), { 0, 0, 0 });
     g_.contact.samples = samples_.data();
     g_.contact.grips = grips_.data();
     g_.contact.holds = holds_.data();
     g_.contact.forces = forces_.data();
     g_.contact.arms = arms_.data();
     g_.contact.clearances = clearances_.data();
-    g_.bones = 2;
     g_.friction_response = physics::friction_response(dt);
   }
   TwoWays(const TwoWays&) = delete;
@@ -61,20 +67,30 @@ public:
   void step(int number)
   {
     const ConstraintStep now{ (number + 1) * dt, dt, number * dt, bones(number + 1), bones(number) };
-    std::vector<float> motions;
-    for (const RigidTransform& pose : now.bone_before)
-      add_bone_motion(pose, pose, 1 / dt, motions);
-    std::vector<float4> bones_before(motions.size() / 4);
-    std::memcpy(bones_before.data(), motions.data(), motions.size() * sizeof(float));
-    g_.bone_motions = bones_before.data();
     std::vector<float> of_bodies;
     for (const ContactBody& body : bodies_)
       add_pose(body, now.bone_before, of_bodies);
     std::vector<float4> rows(of_bodies.size() / 4);
     std::memcpy(rows.data(), of_bodies.data(), of_bodies.size() * sizeof(float));
     g_.contact.poses = rows.data();
+    std::vector<physics::Vec3<double>> held_at;
+    for (const PushedBody& pushed : pushed_)
+      held_at.push_back(held_centre(model_.contacts[pushed.body], now.bone_before));
+    const PushedBodies pushed{ pushed_.data(),
+                               static_cast<std::uint32_t>(pushed_.size()),
+                               static_cast<std::uint32_t>(points_.size()),
+                               rows.data(),
+                               held_at.data(),
+                               motions_.data(),
+                               reactions_.data() };
+    for (std::uint32_t i = 0; i < pushed.count; ++i)
+      move_body(pushed, i, 0, dt, g_.contact.body_count);
+    RigidTransform pose = now.bone_before[1];
+    if (!pushed_.empty())
+      pose = pushed_pose(model_.contacts[0], motions_[0], now.bone_before);
     if (number > 0)
-      way_ += longest_way(bones(number - 1)[1], bones(number)[1], far_corner(model_));
+      way_ += longest_way(pose_, pose, far_corner(model_));
+    pose_ = pose;
     const NodeShare all{ 0, 1, 0, model_.size[2] + 1, 0, static_cast<std::int32_t>(model_.nodes.size()) };
     Components unused = u_;
     double* const ignored[3] = { unused[0].data(), unused[1].data(), unused[2].data() };
@@ -94,6 +110,7 @@ public:
         add_part(moved, weight[b], make_float4(float(u_[0][node]), float(u_[1][node]), float(u_[2][node]), 0));
       }
       const Push push = find_push(g_, points_[p], { static_cast<std::uint32_t>(p), 0, true, moved });
+      put_reactions<1>(pushed, static_cast<std::uint32_t>(p), points_[p].body, push.force);
       touching += push.free_way > 0 ? 0 : 1;
       // A point may be skipped until it and the body together have moved by the distance that its latest evaluation
       // returned.
@@ -106,7 +123,7 @@ public:
       EXPECT_EQ(push.force.z, holds_[p].touching == int(physics::Touching::no) ? 0 : forces_[p].z);
       found.push_back(found_at(g_.contact, p, host.points()[p]));
     }
-    account.follow(found, now);
+    account.follow(found, now, motions_);
     const Components before = u_;
     for (std::size_t n = 0; n < model_.nodes.size(); ++n)
       for (std::size_t axis = 0; axis < 3; ++axis)
@@ -114,6 +131,11 @@ public:
             50e-6 * std::sin(300 * (number + 1) * dt + 700 * test::rest(model_, n)[axis] + double(axis)));
     const double* const old[3] = { before[0].data(), before[1].data(), before[2].data() };
     host.after_step(all, old, pointers().data());
+  }
+  // Poses at the end of the latest step, `number`.
+  std::array<RigidTransform, 2> poses(int number) const
+  {
+    return { { host.bodies(bones(number + 1))[0], account.bodies(bones(number + 1))[0] } };
   }
   // Work of bodies and energy lost to friction [J].
   std::array<double, 2> energies(HostContact& of)
@@ -124,14 +146,15 @@ public:
     return { { ledger["contact"], ledger["friction"] } };
   }
 
-private:
-  using Components = std::array<std::vector<double>, 3>;
-  std::array<const double*, 3> pointers() const { return { { u_[0].data(), u_[1].data(), u_[2].data() } }; }
   static std::vector<RigidTransform> bones(int step)
   {
     const double part = double(step) / steps, depth = std::sin(2 * 3.14159265 * part);
     return { RigidTransform(), rigid_motion({ { 0, 0.1 * part, 0.3 * part } }, { { 1e-3 * part, 0, -1e-3 * depth } }) };
   }
+
+private:
+  using Components = std::array<std::vector<double>, 3>;
+  std::array<const double*, 3> pointers() const { return { { u_[0].data(), u_[1].data(), u_[2].data() } }; }
 
   const Model& model_;
   const Discretisation discretisation_;
@@ -143,6 +166,10 @@ private:
   };
   std::vector<Look> looks_;
   double way_ = 0;
+  RigidTransform pose_;
+  std::vector<PushedBody> pushed_;
+  std::vector<physics::PushedMotion<double>> motions_;
+  std::vector<physics::Vec3<double>> reactions_;
   std::vector<ContactBody> bodies_;
   std::vector<ContactPoint> points_;
   std::vector<float4> grips_, forces_, arms_, clearances_, samples_;
@@ -156,6 +183,46 @@ public:
 
 }  // namespace
 
+namespace
+{
+
+// Moves the finger. Compares forces, moments, energies and, if the body is pushed, its motion; returns the longest way
+// of a pushed body from its bone [m].
+double compare(const Model& model, const std::string& what)
+{
+  TwoWays points(model);
+  double most_force = 0, most_moment = 0, most_way = 0, worst_force = 0, worst_moment = 0, worst_way = 0;
+  for (int step = 0; step < steps; ++step)
+  {
+    points.step(step);
+    const Reaction expected = points.host.reactions()[0], found = points.account.reactions()[0];
+    const auto poses = points.poses(step);
+    const RigidTransform held = TwoWays::bones(step + 1)[1];
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+      most_force = std::max(most_force, std::abs(expected.force[axis]));
+      most_moment = std::max(most_moment, std::abs(expected.moment[axis]));
+      most_way = std::max(most_way, std::abs(poses[0].translation[axis] - held.translation[axis]));
+      worst_force = std::max(worst_force, std::abs(expected.force[axis] - found.force[axis]));
+      worst_moment = std::max(worst_moment, std::abs(expected.moment[axis] - found.moment[axis]));
+      worst_way = std::max(worst_way, std::abs(poses[0].translation[axis] - poses[1].translation[axis]));
+    }
+  }
+  EXPECT_GT(points.touching, 10000) << what;
+  EXPECT_GT(points.skips, 10000) << what;
+  EXPECT_GT(most_force, 0.1) << what;
+  EXPECT_LT(worst_force, 1e-4 * most_force) << what;
+  EXPECT_LT(worst_moment, 1e-4 * most_moment) << what;
+  EXPECT_LE(worst_way, 1e-4 * most_way) << what;
+  const auto expected = points.energies(points.host), found = points.energies(points.account);
+  EXPECT_GT(std::abs(expected[0]), 1e-7) << what;
+  for (std::size_t i = 0; i < 2; ++i)
+    EXPECT_NEAR(found[i], expected[i], 1e-3 * std::abs(expected[i])) << what;
+  return most_way;
+}
+
+}  // namespace
+
 TEST(ContactPointsOfTheGpu, AreThoseOfTheHost)
 {
   for (const std::string body : { "sphere", "samples", "plate" })
@@ -164,30 +231,28 @@ TEST(ContactPointsOfTheGpu, AreThoseOfTheHost)
       Model model = test::block_and_finger(friction, body == "samples");
       if (body == "plate")
         model.contacts[0].field = test::plate(4.2e-3, 1);
-      TwoWays points(model);
-      double most_force = 0, most_moment = 0, worst_force = 0, worst_moment = 0;
-      for (int step = 0; step < steps; ++step)
-      {
-        points.step(step);
-        const Reaction expected = points.host.reactions()[0], found = points.account.reactions()[0];
-        for (std::size_t axis = 0; axis < 3; ++axis)
-        {
-          most_force = std::max(most_force, std::abs(expected.force[axis]));
-          most_moment = std::max(most_moment, std::abs(expected.moment[axis]));
-          worst_force = std::max(worst_force, std::abs(expected.force[axis] - found.force[axis]));
-          worst_moment = std::max(worst_moment, std::abs(expected.moment[axis] - found.moment[axis]));
-        }
-      }
-      EXPECT_GT(points.touching, 10000);
-      EXPECT_GT(points.skips, 10000) << body;
-      EXPECT_GT(most_force, 0.1);
-      EXPECT_LT(worst_force, 1e-4 * most_force) << body << friction;
-      EXPECT_LT(worst_moment, 1e-4 * most_moment) << body << friction;
-      const auto expected = points.energies(points.host), found = points.energies(points.account);
-      EXPECT_GT(std::abs(expected[0]), 1e-7);
-      for (std::size_t i = 0; i < 2; ++i)
-        EXPECT_NEAR(found[i], expected[i], 1e-3 * std::abs(expected[i]));
+      EXPECT_EQ(compare(model, body), 0);
     }
+}
+
+// The finger hangs on a spring, and its bone turns and shifts. Without a bone, a force pushes it.
+TEST(ContactPointsOfTheGpu, PushBodiesAsOnTheHost)
+{
+  for (const bool free : { false, true })
+  {
+    Model model = test::block_and_finger(0.4, true);
+    Contact& contact = model.contacts[0];
+    contact.centre = { { 4e-3, 4e-3, 8.2e-3 } };
+    contact.mass = 2e-3;
+    contact.spring = 400;
+    contact.damping = 0.5;
+    if (free)
+    {
+      contact.bone = -1;
+      contact.force = { { 0.02, 0, -0.3 } };
+    }
+    EXPECT_GT(compare(model, free ? "free" : "on a spring"), 0.1e-3);
+  }
 }
 
 #else

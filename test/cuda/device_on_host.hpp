@@ -21,6 +21,12 @@ static inline void __syncthreads() {}
 static inline int __syncthreads_or(int any) { return any; }
 static inline std::uint32_t __activemask() { return 1; }
 static inline int __any_sync(std::uint32_t, int any) { return any; }
+// The other lanes, which do not exist, add nothing to a sum.
+template <class T>
+static inline T __shfl_xor_sync(std::uint32_t, T, int)
+{
+  return T(0);
+}
 template <class T>
 static inline T __ldg(const T* at)
 {
@@ -42,6 +48,7 @@ static inline std::int32_t __float_as_int(float x) { return static_cast<std::int
 static inline float __int_as_float(std::int32_t bits) { return __uint_as_float(static_cast<std::uint32_t>(bits)); }
 static inline float __fdiv_rn(float x, float y) { return x / y; }
 static inline long long __float2ll_rn(float x) { return llrintf(x); }
+static inline int __float2int_rn(float x) { return static_cast<int>(lrintf(x)); }
 template <class T>
 static inline T atomicMin(T* at, T value)
 {

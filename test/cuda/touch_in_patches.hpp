@@ -35,7 +35,7 @@ public:
     for (const TouchPatch& patch : tables_.patches)
       launch_.room.touch_vertices = std::max(launch_.room.touch_vertices, patch.vertices);
     launch_.most_voxels = cut_.most_voxels;
-    counts_.resize(cut_.patches.size());
+    counts_.resize(2 * cut_.patches.size());
     before_.resize(tables_.vertex_of.size());
     lists_.resize(cut_.patches.size() * tables_.vertices);
     entries_.resize(tables_.most_entries);
@@ -65,6 +65,7 @@ public:
               tables_.near_begin.data(),
               tables_.near.data(),
               tables_.slide,
+              tables_.per_newton,
               counts_.data(),
               lists_.data(),
               entries_.data(),

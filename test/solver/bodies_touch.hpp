@@ -90,17 +90,5 @@ inline void press_and_stroke(Solver& solver, double seconds)
   solver.advance(0.6 * seconds, controls);
 }
 
-// All backends except cuda, for effects that cuda does not compute.
-inline std::vector<Backend> host_backends()
-{
-  auto backends = available_backends();
-  backends.erase(std::remove(backends.begin(), backends.end(), "cuda"), backends.end());
-  return backends;
-}
-
 }  // namespace test
 }  // namespace frontalis
-
-#define FRONTALIS_HOST_BACKENDS(suite)                                                           \
-  INSTANTIATE_TEST_SUITE_P(Backends, suite, testing::ValuesIn(frontalis::test::host_backends()), \
-                           frontalis::test::backend_name)

@@ -34,15 +34,21 @@ std::array<double, 3> offset(const Solver& solver)
   return way;
 }
 
-// A block flies against a free plate.
-TEST_P(BodiesTouch, momentum_goes_over_to_a_body_that_is_pushed)
+// A block that flies against a free plate of 40 mg.
+Model block_and_free_plate(double friction)
 {
   BlockSettings settings;
   settings.voxels = { { 5, 4, 4 } };
   Model model = block_model(settings);
   model.contacts.push_back(touching_side(model, true, plate(4.05e-3, 1)));
   model.contacts[0].mass = 40e-6;
-  model.contacts[0].friction = 0.4;
+  model.contacts[0].friction = friction;
+  return model;
+}
+
+TEST_P(BodiesTouch, momentum_goes_over_to_a_body_that_is_pushed)
+{
+  const Model model = block_and_free_plate(0.4);
   const Discretisation discretisation(model);
   const auto solver = make(model);
   const std::array<double, 3> velocity{ { 0.05, -0.02, 0.3 } };
@@ -73,6 +79,48 @@ TEST_P(BodiesTouch, momentum_goes_over_to_a_body_that_is_pushed)
       EXPECT_GT(of_body, 0.3 * initial);
     }
   }
+}
+
+// The ledger has the work of the tissue on a body, which is the body's kinetic energy.
+TEST_P(BodiesTouch, work_goes_over_to_a_body_that_is_pushed)
+{
+  const Model model = block_and_free_plate(0);
+  const auto solver = make(model, 2, true);
+  solver->set_velocities(Vectors(model.nodes.size(), { { 0, 0, 0.3 } }));
+  const double initial = mechanical(solver->ledger());
+  solver->advance(4e-3, solver->controls());
+  EXPECT_EQ(solver->reactions()[0].force[2], 0);  // block and plate have parted
+  const double before = solver->bodies()[0].translation[2], time = 1e-3;
+  solver->advance(time, solver->controls());
+  const double speed = (solver->bodies()[0].translation[2] - before) / time;
+  const double gained = 0.5 * 40e-6 * speed * speed;
+  EXPECT_GT(gained, 0.1 * initial);
+  EXPECT_NEAR(solver->ledger()["contact"], -gained, 1e-4 * gained);
+  EXPECT_NEAR(mechanical(solver->ledger()), initial - gained, 0.02 * initial);
+}
+
+// An effect that is switched off forgets: the body is back at its bone, at rest.
+TEST_P(BodiesTouch, a_pushed_body_starts_anew_when_contact_is_switched_on)
+{
+  const Model model = block_and_pushed_finger(2e-3, 200, 0.5);
+  const auto solver = make(model);
+  press_and_stroke(*solver, 4e-3);
+  const auto farthest = [&]
+  {
+    double most = 0;
+    for (const double way : offset(*solver))
+      most = std::max(most, std::abs(way));
+    return most;
+  };
+  EXPECT_GT(farthest(), 1e-5);
+  solver->switch_effect(Effect::contact, false);
+  EXPECT_EQ(farthest(), 0);
+  solver->advance(1e-3, solver->controls());
+  EXPECT_EQ(farthest(), 0);
+  solver->switch_effect(Effect::contact, true);
+  EXPECT_EQ(farthest(), 0);
+  solver->advance(1e-3, solver->controls());
+  EXPECT_GT(farthest(), 1e-7);
 }
 
 TEST_P(BodiesTouch, a_pushed_body_comes_to_rest_where_its_forces_balance)
@@ -164,7 +212,7 @@ TEST_P(BodiesTouch, tissue_deep_inside_of_a_body_is_reported)
   EXPECT_NE(report.find("press less deep"), std::string::npos) << report;
 }
 
-FRONTALIS_HOST_BACKENDS(BodiesTouch);
+FRONTALIS_EVERY_BACKEND(BodiesTouch);
 
 }  // namespace
 }  // namespace frontalis

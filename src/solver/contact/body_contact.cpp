@@ -135,8 +135,7 @@ std::vector<BodyState> BodyContact<Real>::next(const ConstraintStep& step) const
   for (std::size_t b = 0; b < bodies_.size(); ++b)
   {
     now.push_back(moved_on(model_.contacts[b], bodies_[b], latest[b], step.bone_before));
-    now[b].dt = step.dt;
-    now[b].kick = bodies_[b].dt > 0 ? 0.5 * (bodies_[b].dt + step.dt) : step.dt;
+    begin_step(now[b], bodies_[b].dt, step.dt);
     way = std::max(way, longest_way(bodies_[b].pose, now[b].pose, far_corner(model_)));
   }
   way += bodies_.front().way + nodes_.spread() * *std::max_element(node_way_.begin(), node_way_.end());
@@ -224,7 +223,8 @@ void BodyContact<Real>::go_on_to(const std::vector<BodyState>& now)
 }
 
 template <class Real>
-void BodyContact<Real>::follow(const std::vector<Found>& found, const ConstraintStep& step)
+void BodyContact<Real>::follow(const std::vector<Found>& found, const ConstraintStep& step,
+                               const std::vector<PushedMotion>& pushed)
 {
   for (std::size_t p = 0; p < points_.size(); ++p)
   {
@@ -234,7 +234,14 @@ void BodyContact<Real>::follow(const std::vector<Found>& found, const Constraint
   }
   for (Chunk& chunk : chunks_)
     chunk.touches = 1;
-  go_on_to(next(step));
+  std::vector<BodyState> now = next(step);
+  for (std::size_t b = 0; b < pushed.size(); ++b)
+    if (const Contact& contact = model_.contacts[b]; contact.mass > 0)
+    {
+      static_cast<PushedMotion&>(now[b]) = pushed[b];
+      now[b].pose = pushed_pose(contact, pushed[b], step.bone_before);
+    }
+  go_on_to(now);
   add_up(0, 0, model_.size[2]);
 }
 

@@ -47,6 +47,7 @@ public:
   // there. follow() then sums these forces.
 
   using Vector = physics::Vec3<double>;
+  using PushedMotion = physics::PushedMotion<double>;
   struct Point
   {
     std::int32_t voxel, body;
@@ -69,8 +70,10 @@ public:
   const std::vector<Point>& points() const { return points_; }
   /// Largest ratio of a point's displacement to the largest displacement of a node of its voxel.
   double spread() const { return nodes_.spread(); }
-  /// Takes the results of a step, one entry per point, and adds up the reactions and energies.
-  void follow(const std::vector<Found>& found, const ConstraintStep& step);
+  /// Takes the results of a step, one entry per point, and adds up the reactions and energies. `pushed`: motion of each
+  /// body at the start of the step, used if the body is pushed; if empty, the motions are computed here.
+  void follow(const std::vector<Found>& found, const ConstraintStep& step,
+              const std::vector<PushedMotion>& pushed = {});
 
 private:
   using Touching = physics::Touching;

@@ -5,30 +5,38 @@
 namespace frontalis
 {
 
-using Vector = physics::Vec3<double>;
-
 RigidTransform held_pose(const Contact& contact, const std::vector<RigidTransform>& bones)
 {
   return contact.bone < 0 ? RigidTransform() : bones[contact.bone];
 }
 
+physics::Vec3<double> held_centre(const Contact& contact, const std::vector<RigidTransform>& bones)
+{
+  return vector_of(held_pose(contact, bones)(contact.centre));
+}
+
+physics::PushedBody<double> pushed_body(const Contact& contact)
+{
+  return { contact.mass, contact.spring, contact.damping, vector_of(contact.force) };
+}
+
+RigidTransform pushed_pose(const Contact& contact, const physics::PushedMotion<double>& motion,
+                           const std::vector<RigidTransform>& bones)
+{
+  RigidTransform pose = held_pose(contact, bones);
+  add_vector(pose.translation, motion.centre - motion.held_at);
+  return pose;
+}
+
 BodyState moved_on(const Contact& contact, const BodyState& before, const Reaction& reaction,
                    const std::vector<RigidTransform>& bones)
 {
-  BodyState after{ held_pose(contact, bones), 0, 0, 0, { 0, 0, 0 }, { 0, 0, 0 } };
+  BodyState after{ {}, held_pose(contact, bones), 0 };
   if (!(contact.mass > 0))
     return after;
-  after.held_at = vector_of(after.pose(contact.centre));
-  if (!(before.dt > 0))
-    return after;
-  const Vector centre = vector_of(before.pose(contact.centre));
-  const Vector held_velocity = (1 / before.dt) * (after.held_at - before.held_at);
-  const Vector force =
-      vector_of(contact.force) + vector_of(reaction.force) + contact.spring * (before.held_at - centre);
-  const double inertia = contact.mass / before.kick, half = 0.5 * contact.damping;
-  after.velocity =
-      (1 / (inertia + half)) * ((inertia - half) * before.velocity + force + contact.damping * held_velocity);
-  add_vector(after.pose.translation, centre + before.dt * after.velocity - after.held_at);
+  static_cast<physics::PushedMotion<double>&>(after) =
+      physics::moved_on(pushed_body(contact), before, vector_of(reaction.force), held_centre(contact, bones));
+  after.pose = pushed_pose(contact, after, bones);
   return after;
 }
 

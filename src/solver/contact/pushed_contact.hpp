@@ -1,6 +1,7 @@
 #pragma once
 
 #include "frontalis/model/contact.hpp"
+#include "frontalis/physics/pushed_body.hpp"
 #include "solver/contact/body_motion.hpp"
 
 #include <vector>
@@ -8,25 +9,28 @@
 namespace frontalis
 {
 
-/// State of a body at the start of a step.
-struct BodyState
+/// State of a body at the start of a step. Of a body that is not pushed, only the times of the inherited members count.
+struct BodyState : physics::PushedMotion<double>
 {
   RigidTransform pose;
-  double way;   ///< upper bound of the distance by which any point and the body have approached each other so far [m]
-  double dt;    ///< length of the step [s]; 0: no step has been made
-  double kick;  ///< time over which forces change velocities in the step [s]
-  // Members for a body that is pushed:
-  physics::Vec3<double> held_at;   ///< position that its centre would have if it kept its pose relative to its bone [m]
-  physics::Vec3<double> velocity;  ///< velocity half a step earlier [m/s]
+  double way;  ///< upper bound of the distance by which any point and the body have approached each other so far [m]
 };
 
 /// Pose of a body that moves with its bone.
 RigidTransform held_pose(const Contact& contact, const std::vector<RigidTransform>& bones);
 
-/// The body at the end of a step; `dt` and `kick` stay 0. A body that is not pushed moves with its bone. A pushed body
-/// turns with its bone, and its centre moves by central differences, as nodes do, so that the impulses of body and
-/// tissue on each other are exact opposites. Half of the damping acts on the new velocity, so that damping does not
-/// limit the time step. `reaction`: of the tissue at the start of the step.
+/// Position that the body's centre has in that pose [m].
+physics::Vec3<double> held_centre(const Contact& contact, const std::vector<RigidTransform>& bones);
+
+/// The law of motion of a body that is pushed.
+physics::PushedBody<double> pushed_body(const Contact& contact);
+
+/// Pose of a body that is pushed, which turns with its bone. `motion`: of the body at the same time as `bones`.
+RigidTransform pushed_pose(const Contact& contact, const physics::PushedMotion<double>& motion,
+                           const std::vector<RigidTransform>& bones);
+
+/// The body at the end of a step; `dt` and `kick` stay 0. A body that is not pushed moves with its bone. `reaction`: of
+/// the tissue at the start of the step.
 BodyState moved_on(const Contact& contact, const BodyState& before, const Reaction& reaction,
                    const std::vector<RigidTransform>& bones);
 
