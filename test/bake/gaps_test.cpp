@@ -102,6 +102,16 @@ TEST(Gaps, ThinGapKeepsBlocksApart)
   }
 }
 
+TEST(Gaps, SliversOfTheOtherSideJoinNothing)
+{
+  // the upper block reaches into the voxels of the lower one by less than fill_min
+  for (const double sliver : { 0.02e-3, 0.04e-3, 0.06e-3 })
+  {
+    const auto bodies = bodies_of(bake(two_blocks(0.8e-3, "parted", 8.2e-3 - sliver)));
+    EXPECT_EQ(std::set<std::size_t>(bodies.begin(), bodies.end()).size(), 2u) << sliver;
+  }
+}
+
 TEST(Gaps, BoneHoldsTheTissueThatItTouches)
 {
   // the blocks are a gum of 1.5 mm on bone, and a lip over the gum

@@ -31,7 +31,7 @@ struct Chain
   double curvature = 0;  // relative change of the springs' stiffness per displacement [1/m]
   double mass = 1e-6;
 
-  Chain() : model(bar()), discretisation(model), u(model.nodes.size())
+  explicit Chain(Model of = bar()) : model(std::move(of)), discretisation(model), u(model.nodes.size())
   {
     for (double& m : discretisation.node_mass)
       m = mass;
@@ -100,6 +100,20 @@ TEST(HighestFrequencySearch, ends_at_numbers_that_are_not_finite)
   EXPECT_EQ(chain.products, 1);
   chain.curvature = 0;
   EXPECT_NEAR(chain.search() / chain.exact(), 1, 5e-3) << "nothing is left of it";
+}
+
+// Two masses at the ends of a spring that a joint bridges move as one, between two springs.
+TEST(HighestFrequencySearch, moves_both_nodes_of_a_joint_as_one)
+{
+  Model model = bar();
+  const auto middle = static_cast<std::int32_t>(model.nodes.size() / 2);
+  model.joints.push_back({ middle, middle - 1 });
+  Chain chain(model);
+  chain.stiff = 100;
+  for (std::int32_t n = 0; n < static_cast<std::int32_t>(chain.u.size()); ++n)
+    if (n < middle - 1 || n > middle)
+      chain.discretisation.held.push_back(n);
+  EXPECT_NEAR(chain.search() / (stiffness / chain.mass), 1, 5e-3);
 }
 
 TEST(HighestFrequencySearch, finds_nothing_where_no_node_can_move)

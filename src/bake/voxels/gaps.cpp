@@ -153,7 +153,8 @@ void Gaps::find_parts(Tissue& tissue) const
     if (samples > 0 && samples >= scene_.accuracy.fill_min * all)
       parts.emplace_back(-samples, set);
   std::sort(parts.begin(), parts.end());
-  if (parts.size() < 2)
+  // Points of sets that are too small to be parts join nothing: they may lie on the other side of a gap.
+  if (parts.empty())
     return;
   for (std::size_t i = 0; i < count; ++i)
   {

@@ -223,6 +223,8 @@ Discretisation::Discretisation(const Model& model)
     weight_share.push_back(static_cast<float>(weight[n] / node_mass[n]));
   if (!model.attached.empty())
     share_masses();
+  for (const Model::Joint& joint : model.joints)
+    followers.push_back({ joint.node, joint.master, 1 });
   bound_at_rest();
   if (added.empty())
     return;

@@ -92,7 +92,8 @@ public:
   /// node_mass; the mass of a node that does not move with its master is infinite. If the list is empty, node_mass
   /// applies.
   std::vector<double> bound_mass;
-  /// A held node that follows a master: its displacement relative to the bone is `ratio` times the master's.
+  /// A held node that follows a master: its displacement relative to the bone is `ratio` times the master's. At a
+  /// joint the ratio is 1.
   struct Follower
   {
     std::int32_t node, master;

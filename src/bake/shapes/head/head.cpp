@@ -30,8 +30,6 @@ constexpr double hair_margin = 5.5e-3;
 constexpr double hairline_wave = 1e-3;  // [m] by which locks shift the hairline
 constexpr double lock_height = 0.12;    // height of a lock divided by the thickness of the hair
 
-constexpr const char* level_body = "fissure";  // a body all of whose points keep their heights: it empties voxels
-
 constexpr int default_levels = 2;  // subdivisions of the skin from which depths are measured
 
 /// Steps of subdivision after which edges are at most `edge` long on average.
@@ -169,14 +167,10 @@ TriangleMesh Head::bone(const std::string& name, double edge) const
   Box half = bounding_box(default_skin_);
   half.min()[1] = 0;
   TriangleMesh mesh = isosurface([&](const Vector3d& p) { return bones_->part(name, p); }, half, edge, true);
-  const bool is_level = name == level_body;
   for (Vector3& p : mesh.vertices)
   {
     const bool middle = p[1] == 0;
-    const double height = p[2];
     p = to_array((*warp_)(to_vector(p)));
-    if (is_level)
-      p[2] = height;
     if (middle)
       p[1] = 0;
   }

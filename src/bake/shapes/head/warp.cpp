@@ -11,8 +11,7 @@ namespace
 // Correlation length of the landmarks' displacements: about half the height of a face.
 constexpr double correlation_length = 60e-3;  // [m]
 constexpr int iterations = 12;
-// The head is shifted so that this landmark keeps its height. The fissure of the mouth is there, for which a layer of
-// voxels is empty.
+// The head is shifted so that this landmark, the fissure of the mouth, keeps its height: the lips keep their voxels.
 constexpr const char* level_landmark = "sto";
 // A dimension that differs from the mean by more than this number of standard deviations is refused: hardly one person
 // in 10^8 has it.
