@@ -21,12 +21,6 @@ static inline void __syncthreads() {}
 static inline int __syncthreads_or(int any) { return any; }
 static inline std::uint32_t __activemask() { return 1; }
 static inline int __any_sync(std::uint32_t, int any) { return any; }
-// The other lanes, which do not exist, add nothing to a sum.
-template <class T>
-static inline T __shfl_xor_sync(std::uint32_t, T, int)
-{
-  return T(0);
-}
 template <class T>
 static inline T __ldg(const T* at)
 {

@@ -104,8 +104,23 @@ private:
   double extrapolation_;
 };
 
-/// Unit vectors at the vertices of a surface, local axes, opposite to its normals.
-std::vector<Vector3d> inward_normals(const TriangleMesh& surface, const LocalFrame& frame)
+/// Whether tissue surrounds a surface, such as that of a cavity, whose normals then point into the tissue.
+bool is_surrounded(const Scene& scene, const std::string& surface)
+{
+  const auto names = [&](const std::vector<std::string>& list)
+  { return std::find(list.begin(), list.end(), surface) != list.end(); };
+  bool surrounded = false, surrounds = false;
+  for (const Volume& volume : scene.volumes)
+  {
+    surrounded = surrounded || (volume.tissue && names(volume.outside));
+    surrounds = surrounds || (volume.tissue && names(volume.inside));
+  }
+  return surrounded && !surrounds;
+}
+
+/// Unit vectors at the vertices of a surface, local axes, opposite to its normals or, if tissue surrounds it, along
+/// them.
+std::vector<Vector3d> inward_normals(const TriangleMesh& surface, bool surrounded, const LocalFrame& frame)
 {
   std::vector<Vector3d> normals(surface.vertices.size(), Vector3d::Zero());
   for (const Triangle& t : surface.triangles)
@@ -116,18 +131,18 @@ std::vector<Vector3d> inward_normals(const TriangleMesh& surface, const LocalFra
       normals[c] += normal;
   }
   for (Vector3d& normal : normals)
-    normal.normalize();
+    normal = (surrounded ? -1 : 1) * normal.normalized();
   return normals;
 }
 
-BoundMesh bind_mesh(const TriangleMesh& whole, const Region& crop, const LocalFrame& frame, const PointBinder& binder,
-                    BakeMonitor& monitor)
+BoundMesh bind_mesh(const TriangleMesh& whole, bool surrounded, const Region& crop, const LocalFrame& frame,
+                    const PointBinder& binder, BakeMonitor& monitor)
 {
   const TriangleMesh surface = cut_mesh(whole, crop);
   const std::size_t count = surface.vertices.size();
   std::vector<std::int32_t> voxel(count, -1);
   std::vector<std::array<float, 3>> coordinates(count);
-  const std::vector<Vector3d> inwards = inward_normals(surface, frame);
+  const std::vector<Vector3d> inwards = inward_normals(surface, surrounded, frame);
   parallel_for(monitor, count, points_per_task,
                [&](std::size_t v)
                { binder.bind(frame.to_local(to_vector(surface.vertices[v])), inwards[v], voxel[v], coordinates[v]); });
@@ -276,7 +291,7 @@ double extrapolation_of(const Scene& scene, const Model& model)
 BoundMesh bind_mesh(const TriangleMesh& whole, const Region& crop, const LocalFrame& frame, const Model& model,
                     double extrapolation, BakeMonitor& monitor)
 {
-  return bind_mesh(whole, crop, frame, PointBinder(model, frame, extrapolation), monitor);
+  return bind_mesh(whole, false, crop, frame, PointBinder(model, frame, extrapolation), monitor);
 }
 
 void bind_surfaces(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,
@@ -291,7 +306,7 @@ void bind_surfaces(const Scene& scene, const PreparedSurfaces& surfaces, const L
     TriangleMesh surface = cut_mesh(skin.mesh(), scene.skin.crop);
     if (!scene.films.empty())
       add_film(scene, surface, model, monitor);
-    BoundMesh bound = bind_mesh(surface, Region(), frame, binder, monitor);
+    BoundMesh bound = bind_mesh(surface, false, Region(), frame, binder, monitor);
     if (bound.mesh.triangles.empty())
       throw failure(
           "{}: skin: no triangle of surface '{}' lies in the crop and within {} of the tissue; check its crop and the "
@@ -322,8 +337,8 @@ void bind_surfaces(const Scene& scene, const PreparedSurfaces& surfaces, const L
     else
     {
       const std::string place = place_in_scene(scene, "load", load);
-      BoundMesh bound =
-          bind_mesh(named_surface(surfaces, load.surface, place).mesh(), load.crop, frame, binder, monitor);
+      BoundMesh bound = bind_mesh(named_surface(surfaces, load.surface, place).mesh(),
+                                  is_surrounded(scene, load.surface), load.crop, frame, binder, monitor);
       if (bound.mesh.triangles.empty())
         throw failure("{}: no triangle of surface '{}' lies in its crop and within {} of the tissue", place,
                       load.surface, length_text(extrapolation, scene.unit));

@@ -173,6 +173,7 @@ BoundaryBody curved_layer(double thickness, double poisson, bool slides, bool st
                                            slides ? SceneConstraint::Kind::sliding : SceneConstraint::Kind::rigid) };
   if (!stiff)
     body.bound = 0.03;
+  body.converges = !(stiff && slides);
   // Gravity is so weak that strains are about 1e-4.
   const double gravity = slides ? 0.1 : 1;
   body.scene.gravity = { 0, 0, -gravity };
@@ -196,6 +197,7 @@ BoundaryBody pressed_sphere(double poisson)
                              shape_surface("skin", Shape::Kind::sphere, b, 1e-3), poisson);
   keep_an_eighth(body.scene);
   body.mirror = BoundaryBody::Mirror::symmetric;
+  body.bound = 0.01;
   SceneLoad load;
   load.name = "pressure";
   load.kind = SceneLoad::Kind::pressure;

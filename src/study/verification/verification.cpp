@@ -32,6 +32,7 @@ std::vector<VerificationCase> verification_cases(const BakeScene& bake)
            { "cook_membrane", true, verify_cook },
            { "staircase", false, verify_staircase },
            { "attachment", false, baked(verify_attachment) },
+           { "fitted_layers", false, baked(verify_fitted_layers) },
            { "free_sides", false, baked(verify_free_sides) },
            { "wrinkling", true, verify_wrinkling },
            { "shell", true, baked(verify_shell) },

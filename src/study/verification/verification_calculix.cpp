@@ -1,15 +1,11 @@
 // Compares solutions of voxels with those of CalculiX with quadratic hexahedra.
 
-#include "frontalis/error.hpp"
+#include "study/verification/calculix.hpp"
 #include "study/verification/verification_cases.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <sstream>
 
@@ -92,13 +88,10 @@ std::string deck(const SolidProblem& problem, const Lattice& elements, Vectors& 
       }
   for (std::size_t m = 0; m < problem.materials.size(); ++m)
   {
-    const auto& p = problem.materials[m].parameters;
     const std::string name = fmt::to_string(m);
     solids << "*ELEMENT,TYPE=C3D20R,ELSET=E" << name << '\n' << of_material[m].str();
-    sections << "*MATERIAL,NAME=M" << name << "\n*HYPERELASTIC,NEO HOOKE\n"
-             << 0.5e-6 * p[0] << ',' << 2e6 / p[1] << "\n*DENSITY\n"
-             << 1e-12 * problem.materials[m].density << "\n*SOLID SECTION,ELSET=E" << name << ",MATERIAL=M" << name
-             << '\n';
+    sections << calculix_material("M" + name, problem.materials[m]) << "*SOLID SECTION,ELSET=E" << name << ",MATERIAL=M"
+             << name << '\n';
   }
   for (std::size_t n = 0; n < positions.size(); ++n)
     for (const auto& hold : problem.holds)
@@ -111,66 +104,21 @@ std::string deck(const SolidProblem& problem, const Lattice& elements, Vectors& 
       }
   const auto& g = problem.gravity;
   const double gravity = std::hypot(g[0], g[1], g[2]);
-  std::ostringstream out;
-  out.precision(12);
-  out << "*NODE,NSET=NALL\n"
-      << nodes.str() << solids.str() << sections.str() << "*STEP,NLGEOM,INC=1000\n*STATIC\n0.25,1,1e-5,0.5\n*BOUNDARY\n"
-      << held.str();
   for (std::size_t m = 0; gravity > 0 && m < problem.materials.size(); ++m)
-    out << "*DLOAD\nE" << m << ",GRAV," << 1e3 * gravity << ',' << g[0] / gravity << ',' << g[1] / gravity << ','
-        << g[2] / gravity << '\n';
-  out << "*NODE PRINT,NSET=NALL,FREQUENCY=1000\nU,RF\n*END STEP\n";
-  return out.str();
+    held << "*DLOAD\nE" << m << ",GRAV," << 1e3 * gravity << ',' << g[0] / gravity << ',' << g[1] / gravity << ','
+         << g[2] / gravity << '\n';
+  return "*NODE,NSET=NALL\n" + nodes.str() + solids.str() + sections.str() + calculix_step("*BOUNDARY\n" + held.str());
 }
 
-std::string text_of(const std::filesystem::path& path)
-{
-  std::ifstream file(path);
-  return { std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>() };
-}
-
-// Reads the last table with a name, of `count` nodes, from CalculiX's output. The factor `unit` converts to SI units.
-Vectors last_block(const std::string& output, const std::string& name, std::size_t count, double unit)
-{
-  const std::size_t at = output.rfind(name);
-  if (at == std::string::npos)
-    throw Error("CalculiX: the output has no table of " + name);
-  std::istringstream in(output.substr(output.find('\n', at)));
-  Vectors values(count);
-  std::size_t node = 0;
-  for (std::size_t n = 0; n < count; ++n)
-  {
-    in >> node;
-    if (!in || node < 1 || node > count)
-      throw Error(fmt::format("CalculiX: the table of {} ends after {} of {} nodes", name, n, count));
-    for (double& c : values[node - 1])
-    {
-      in >> c;
-      c *= unit;
-    }
-  }
-  return values;
-}
-
-// Solves the problem by CalculiX (program ccx) with elements[0] x [1] x [2] quadratic hexahedra (C3D20R), hyperelastic,
-// with large deformation. CalculiX's neo-Hookean solid equals ours with C10 = mu / 2 and D1 = 2 / kappa (CalculiX
-// manual, *HYPERELASTIC: U = C10 (I1 - 3) + (J - 1)^2 / D1 of the isochoric I1). Input and output are in a temporary
-// folder that is removed afterwards. Throws Error with the end of CalculiX's log if CalculiX fails.
+// Solves the problem by CalculiX with elements[0] x [1] x [2] quadratic hexahedra (C3D20R), hyperelastic, with large
+// deformation.
 SolidState solve_by_calculix(const SolidProblem& problem, const Lattice& elements)
 {
   SolidState state;
-  std::string folder = (std::filesystem::temp_directory_path() / "frontalis_ccx_XXXXXX").string();
-  if (mkdtemp(folder.data()) == nullptr)
-    throw Error(folder + ": cannot be created");
-  const std::filesystem::path base(folder);
-  write_text((base / "deck.inp").string(), deck(problem, elements, state.positions));
-  const int status = std::system(("cd '" + folder + "' && ccx -i deck >log 2>&1").c_str());
-  const std::string output = text_of(base / "deck.dat"), log = text_of(base / "log");
-  std::filesystem::remove_all(base);
-  if (status != 0 || log.find("*ERROR") != std::string::npos || log.find("Job finished") == std::string::npos)
-    throw Error("CalculiX failed: " + log.substr(log.size() < 500 ? 0 : log.size() - 500));
-  state.displacements = last_block(output, "displacements", state.positions.size(), 1e-3);
-  state.forces = last_block(output, "forces", state.positions.size(), 1);
+  const std::string input = deck(problem, elements, state.positions);
+  CalculixState solved = run_calculix(input, state.positions.size());
+  state.displacements = std::move(solved.displacements);
+  state.forces = std::move(solved.forces);
   return state;
 }
 
@@ -332,9 +280,9 @@ Comparison indented_slab()
 
 void verify_calculix(const Backend& backend, Finding& finding)
 {
-  if (std::system("command -v ccx >/dev/null 2>&1") != 0)
+  if (!calculix_is_installed())
   {
-    finding.skipped = "CalculiX (program ccx, Debian's package calculix-ccx) is not installed";
+    finding.skipped = calculix_is_missing;
     return;
   }
   Plot plot = convergence_plot("Difference from CalculiX", "voxel edge [mm]", "relative difference [%]",

@@ -16,6 +16,7 @@ VerificationFunction verify_rigid_motion, verify_affine_motion, verify_energy_gr
     verify_calculix;
 /// Cases that start from a scene.
 void verify_attachment(const Backend& backend, const BakeScene& bake, Finding& finding);
+void verify_fitted_layers(const Backend& backend, const BakeScene& bake, Finding& finding);
 void verify_free_sides(const Backend& backend, const BakeScene& bake, Finding& finding);
 void verify_shell(const Backend& backend, const BakeScene& bake, Finding& finding);
 void verify_wrinkle(const Backend& backend, const BakeScene& bake, Finding& finding);
