@@ -73,6 +73,15 @@ TEST(BakeShell, ends_at_slits)
   Scene scene = ball_in_shells(false, true);
   scene.surfaces.push_back(box_surface("cut", { cut + 20e-3, 0, 0 }, { 40e-3, 60e-3, 60e-3 }));
   scene.volumes[0].slits = { "cut" };
+  // a half that nothing holds would be left out of the model
+  for (const double side : { -1.0, 1.0 })
+  {
+    SceneConstraint hold;
+    hold.name = side < 0 ? "left" : "right";
+    hold.surfaces = { hold.name };
+    scene.surfaces.push_back(sphere_surface(hold.name, { side * 6e-3, 0, 0 }, 2e-3));
+    scene.constraints.push_back(hold);
+  }
   const Model model = bake(scene);
   ASSERT_EQ(model.shells.size(), 1U);
   std::array<std::size_t, 2> on_side{};

@@ -63,9 +63,13 @@ void face_switched(CaseRun& run, const std::string& scene)
 void face_at_full(CaseRun& run, const std::string& scene)
 {
   GuardedTrial motion(run, run.settings.scene(scene), true, { face_check_interval });
-  switch_to(motion, motion.controls(1), time_of(run, "on"));
-  switch_to(motion, motion.controls(0), time_of(run, "off"));
-  motion.check_balance("every muscle on and off at once");
+  motion.hold_or_stop(
+      [&]
+      {
+        switch_to(motion, motion.controls(1), time_of(run, "on"));
+        switch_to(motion, motion.controls(0), time_of(run, "off"));
+        motion.check_balance("every muscle on and off at once");
+      });
   // The real face gets no plot, because its data are private.
   if (scene == "head")
     motion.plot("head_at_full", "Every muscle of the head switched on in one step, and off");
