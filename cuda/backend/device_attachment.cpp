@@ -3,7 +3,6 @@
 #include "frontalis/model/sample_field.hpp"
 
 #include <algorithm>
-#include <map>
 #include <numeric>
 #include <tuple>
 
@@ -38,7 +37,6 @@ AttachedTables::AttachedTables(const Model& model, const std::vector<double>& ma
     for (std::uint32_t axis = 0; axis < 3; ++axis)
       group.fixed |= fixed[master][axis] ? 1u << axis : 0u;
     group.first = static_cast<std::int32_t>(ties.size());
-    std::map<std::int32_t, std::int32_t> master_planes;  // by surface
     for (; end < nodes.size() && nodes[end].master == master; ++end)
     {
       const AttachedNode& node = nodes[end];
@@ -53,10 +51,8 @@ AttachedTables::AttachedTables(const Model& model, const std::vector<double>& ma
       {
         tie.bone = model.constraint_surfaces[node.surface].bone;
         tie.offset = static_cast<float>(level_offset(model, node));
-        const auto known = master_planes.find(node.surface);
-        if (known == master_planes.end())
-          master_planes[node.surface] = add_place(model, master, node.surface);
-        tie.master_plane = master_planes[node.surface];
+        // one per tie, because the threads of a group take its ties at the same time
+        tie.master_plane = add_place(model, master, node.surface);
         tie.plane = add_place(model, node.node, node.surface);
       }
       ties.push_back(tie);

@@ -44,6 +44,8 @@ struct MovedGroup
         for (int j = 0; j < 3; ++j)
           balance.mass[i][j] += __shfl_xor_sync(together, balance.mass[i][j], apart);
       }
+    // All threads have read the master's motion before one of them changes it.
+    __syncwarp(together);
   }
   __device__ __forceinline__ std::int32_t last() const { return group.last; }
   __device__ __forceinline__ float mass() const { return group.mass; }

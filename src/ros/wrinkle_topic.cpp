@@ -81,6 +81,10 @@ void WrinkleTopic::run()
     catch (const Stopped&)
     {
     }
+    catch (const std::exception& error)
+    {
+      ROS_ERROR_THROTTLE(10, "wrinkles are not measured: %s", error.what());
+    }
     lock.lock();
   }
 }

@@ -58,7 +58,7 @@ std::vector<BodyFrame> bodies_in_face_frame(const Solver& solver, const Model& m
   std::vector<BodyFrame> bodies;
   bodies.reserve(reactions.size());
   for (std::size_t c = 0; c < reactions.size(); ++c)
-    bodies.push_back(in_face_frame(model, reactions[c], poses[c]));
+    bodies.push_back(in_face_frame(model, reactions[c], poses.at(c)));
   return bodies;
 }
 

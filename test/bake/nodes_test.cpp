@@ -181,7 +181,6 @@ TEST(Loads, OnAHollowAreCarriedByTheTissueAroundIt)
   scene.surfaces = { sphere_surface("skin", { 0, 0, 0 }, 30e-3, 2e-3),
                      sphere_surface("hollow", { 0, 0, 0 }, 20e-3, 1e-3) };
   scene.volumes = { volume_inside("tissue", { "skin" }, "fat", true) };
-  scene.volumes[0].outside = { "hollow" };
   Region eighth;
   eighth.lower = { 0, 0, 0 };
   scene.volumes[0].crop = eighth;
@@ -192,10 +191,16 @@ TEST(Loads, OnAHollowAreCarriedByTheTissueAroundIt)
   load.crop = eighth;
   load.value = { -10, 0, 0 };
   scene.loads = { load };
-  const Model model = bake(scene);
-  ASSERT_EQ(model.loads.size(), 1u);
-  // The cells in which the hollow touches a plane of the grid have hardly any tissue; the next voxels above carry it.
-  for (const auto& coordinates : model.loads[0].binding.coordinates)
-    for (const float c : coordinates)
-      EXPECT_TRUE(c > -0.5f && c < 1.5f) << c;
+  for (const bool outside : { true, false })
+  {
+    Volume& tissue = scene.volumes[0];
+    (outside ? tissue.outside : tissue.without) = { "hollow" };
+    (outside ? tissue.without : tissue.outside).clear();
+    const Model model = bake(scene);
+    ASSERT_EQ(model.loads.size(), 1u);
+    // The cells in which the hollow touches a plane of the grid have hardly any tissue; the next voxels above carry it.
+    for (const auto& coordinates : model.loads[0].binding.coordinates)
+      for (const float c : coordinates)
+        EXPECT_TRUE(c > -0.5f && c < 1.5f) << c;
+  }
 }

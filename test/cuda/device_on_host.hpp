@@ -18,6 +18,7 @@ struct ThreadOnHost
 };
 static const ThreadOnHost threadIdx{ 0 }, blockDim{ 1 };
 static inline void __syncthreads() {}
+static inline void __syncwarp(std::uint32_t) {}
 static inline int __syncthreads_or(int any) { return any; }
 static inline std::uint32_t __activemask() { return 1; }
 static inline int __any_sync(std::uint32_t, int any) { return any; }

@@ -112,7 +112,7 @@ bool is_surrounded(const Scene& scene, const std::string& surface)
   bool surrounded = false, surrounds = false;
   for (const Volume& volume : scene.volumes)
   {
-    surrounded = surrounded || (volume.tissue && names(volume.outside));
+    surrounded = surrounded || (volume.tissue && (names(volume.outside) || names(volume.without)));
     surrounds = surrounds || (volume.tissue && names(volume.inside));
   }
   return surrounded && !surrounds;

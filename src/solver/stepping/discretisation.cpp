@@ -113,16 +113,6 @@ std::vector<std::int32_t> held_nodes(const Model& model)
   return held.size() < directions.size() ? held : std::vector<std::int32_t>();
 }
 
-// Hourglass stiffness of a full voxel of the softest material [N/m].
-double softest_hourglass(const Model& model)
-{
-  const auto& h = model.spacing;
-  double young = std::numeric_limits<double>::infinity();
-  for (const Material& material : model.materials)
-    young = std::min(young, physics::young_modulus(shear_at_rest(material), double(material.parameters[1])));
-  return physics::hourglass_stiffness(young, h[0] * h[1] * h[2], std::max({ h[0], h[1], h[2] }));
-}
-
 void mix_viscosity(const Model& model, std::size_t voxel, VoxelProperties& out)
 {
   double stiffness = 0;

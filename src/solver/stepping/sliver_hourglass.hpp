@@ -1,7 +1,6 @@
 #pragma once
 
-#include "frontalis/physics/hourglass.hpp"
-#include "frontalis/physics/time_step.hpp"
+#include "frontalis/model/model.hpp"
 
 #include <algorithm>
 
@@ -10,6 +9,9 @@ namespace frontalis
 
 /// A voxel with at most this much tissue has its least hourglass stiffness in full, one with twice as much has none.
 constexpr double sliver_fill = 0.1;
+
+/// Hourglass stiffness [N/m] of a full voxel of the softest material that voxels contain.
+double softest_hourglass(const Model& model);
 
 /// Least hourglass stiffness [N/m] of a nearly empty voxel, a sliver: that of a full voxel of the model's softest
 /// material, `full`, but at most half of what the sliver's time step allows.

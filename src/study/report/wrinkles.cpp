@@ -120,10 +120,10 @@ SmoothSkin smooth_skin(const SkinState& skin, const SkinTriangles& triangles, co
       used[v] = true;
   for (std::size_t i = 0; i < count; ++i)
   {
-    if (!used[i])
-      continue;
     if (progress && i % vertices_per_report == 0)
       progress(static_cast<double>(i) / static_cast<double>(skin.vertices.size()));
+    if (!used[i])
+      continue;
     const Vector at = to_eigen(skin.vertices[i]), own = to_eigen(skin.normals[i]);
     std::vector<std::pair<const Piece*, double>> near;  // pieces near the vertex, and their weights
     Vector normal = Vector::Zero();

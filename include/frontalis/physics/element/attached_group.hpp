@@ -13,14 +13,15 @@ namespace physics
 
 /// Changes the velocities of a group after the free update of a step, so that they are those which the constraints
 /// allow and which minimise the sum of mass times |v - v*|^2 over the group, where v* is a velocity before the change
-/// (Gauss's principle). Displacements follow. Group is a type of the backend:
-///   first(), last(), stride()     the ties of this thread, one per node that follows; several threads may share a
-///   group join(balance)                 adds the sums of the threads, so that each has that of the group mass(),
-///   fixed(axis)           the master's mass [kg]; whether it has a prescribed path along an axis motion(),
-///   set_motion(m)       the master's PointMotion held(tie), ratio(tie), mass(tie), offset(tie)      offset:
-///   level_offset() of a sliding node [m] motion(tie), set_motion(tie, m)                    the node's PointMotion
-///   bone_at_node(tie), bone_at_master(tie)             PointMotion of a held node's bone at both rest positions
-///   level_of_node(tie, u), level_of_master(tie, u)     MovingLevel at a displacement u; the gradient may be zero
+/// (Gauss's principle). Displacements follow. Group is a type of the backend with the members
+/// - first(), last(), stride(): the ties of this thread, one per node that follows; several threads may share a group;
+/// - join(balance): adds the sums of these threads, so that each has that of the group;
+/// - mass(), fixed(axis): the master's mass [kg], and whether it has a prescribed path along an axis;
+/// - motion(), set_motion(m): the master's PointMotion;
+/// - held(tie), ratio(tie), mass(tie), offset(tie): of a node that follows; offset: level_offset() if it slides [m];
+/// - motion(tie), set_motion(tie, m): its PointMotion;
+/// - bone_at_node(tie), bone_at_master(tie): PointMotion of a held node's bone at both rest positions;
+/// - level_of_node(tie, u), level_of_master(tie, u): MovingLevel at a displacement u; the gradient may be zero.
 template <class Group, class T>
 FRONTALIS_LAW void move_attached_group(Group& group, const T& dt)
 {
