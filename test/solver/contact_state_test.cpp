@@ -90,17 +90,23 @@ TEST(PointsOfContact, every_instruction_set_finds_the_forces_of_single_points)
   for (const char* instructions : { "baseline", "avx2", "avx512" })
   {
     ::setenv("FRONTALIS_INSTRUCTION_SET", instructions, 1);
+    bool available = true;
     try
+    {
+      make_solver(std::make_shared<const Model>(model), { "cpu", 1 });
+    }
+    catch (const Error&)
+    {
+      available = false;  // on this machine
+    }
+    EXPECT_TRUE(available || std::string(instructions) != "baseline");
+    if (available)
     {
       const auto one = run(1);
       for (std::size_t axis : { 0, 2 })
         EXPECT_NEAR(one->reactions()[1].force[axis], force[axis], 1e-3 * std::abs(force[axis])) << instructions;
       for (const int threads : { 2, 3 })
         EXPECT_EQ(displacements(*run(threads)), displacements(*one)) << instructions << threads;
-    }
-    catch (const Error&)
-    {
-      // this machine lacks the instruction set
     }
     ::unsetenv("FRONTALIS_INSTRUCTION_SET");
   }
