@@ -110,6 +110,11 @@ TEST(Gaps, SliversOfTheOtherSideJoinNothing)
     const auto bodies = bodies_of(bake(two_blocks(0.8e-3, "parted", 8.2e-3 - sliver)));
     EXPECT_EQ(std::set<std::size_t>(bodies.begin(), bodies.end()).size(), 2u) << sliver;
   }
+  // a voxel has a tenth of its tissue from each block, enough for fill_min only together
+  Scene scene = two_blocks(2.4e-3, "parted", 6.3e-3);
+  scene.accuracy.fill_min = 0.15;
+  const auto bodies = bodies_of(bake(scene));
+  EXPECT_EQ(std::set<std::size_t>(bodies.begin(), bodies.end()).size(), 2u);
 }
 
 TEST(Gaps, BoneHoldsTheTissueThatItTouches)

@@ -150,12 +150,14 @@ void Gaps::find_parts(Tissue& tissue) const
     samples_in[sets.find_set(i)] += tissue.sample[i] < all ? 1 : 0;
   std::vector<std::pair<int, std::size_t>> parts;
   for (const auto& [set, samples] : samples_in)
-    if (samples > 0 && samples >= scene_.accuracy.fill_min * all)
-      parts.emplace_back(-samples, set);
+    parts.emplace_back(-samples, set);
   std::sort(parts.begin(), parts.end());
-  // Points of sets that are too small to be parts join nothing: they may lie on the other side of a gap.
-  if (parts.empty())
-    return;
+  // The largest set is a part, however small it is. Points of other sets that are too small to be parts join nothing:
+  // they may lie on the other side of a gap.
+  const auto is_small = [&](const auto& part)
+  { return -part.first < std::max(1.0, scene_.accuracy.fill_min * static_cast<double>(all)); };
+  if (!parts.empty())
+    parts.erase(std::find_if(parts.begin() + 1, parts.end(), is_small), parts.end());
   for (std::size_t i = 0; i < count; ++i)
   {
     const std::size_t set = sets.find_set(i);
