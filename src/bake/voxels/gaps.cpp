@@ -149,6 +149,7 @@ void Gaps::find_parts(Tissue& tissue) const
   for (std::size_t i = 0; i < count; ++i)
     samples_in[sets.find_set(i)] += tissue.sample[i] < all ? 1 : 0;
   std::vector<std::pair<int, std::size_t>> parts;
+  parts.reserve(samples_in.size());
   for (const auto& [set, samples] : samples_in)
     parts.emplace_back(-samples, set);
   std::sort(parts.begin(), parts.end());
