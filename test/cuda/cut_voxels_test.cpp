@@ -12,7 +12,7 @@
 #include <random>
 #include <vector>
 
-#include "warp_on_host.hpp"
+#include "device_on_host.hpp"
 
 // strips call only some of the functions that their headers define
 #pragma GCC diagnostic ignored "-Wunused-function"
@@ -106,11 +106,11 @@ struct Swept
     }
     std::uint32_t most = 0;
     for (const Strip& strip : strips.strips)
-      WarpOnHost(
-          [&](int lane)
+      BlockOnHost(
+          [&]
           {
             std::uint32_t bits = 0;
-            sweep_strip<2, With>(g, strip, g.slots + strip.slot_begin + lane, nullptr, nullptr, u.data(), next.data(),
+            sweep_strip<2, With>(g, strip, g.slots + strip.slot_begin + threadIdx.x, nullptr, nullptr, u.data(), next.data(),
                                  Activations{ nullptr, 1 }, true, bits);
             most = std::max(most, bits);
           });
