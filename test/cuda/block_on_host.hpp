@@ -38,10 +38,7 @@ public:
   }
 
   static Index thread() { return { current() == nullptr ? 0 : current()->now_ }; }
-  static Index size()
-  {
-    return { current() == nullptr ? 1 : static_cast<std::uint32_t>(current()->threads_.size()) };
-  }
+  static Index size() { return { current() == nullptr ? 1 : static_cast<std::uint32_t>(current()->threads_.size()) }; }
   /// Lets all other threads have a turn.
   static void wait()
   {

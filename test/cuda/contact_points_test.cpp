@@ -12,6 +12,9 @@
 
 #include "device_on_host.hpp"
 
+// all threads of a block share these arrays, and blocks run one after another
+#undef __shared__
+#define __shared__ static
 #include "cuda/kernels/contact_points.cuh"
 #include "cuda/kernels/pushed_bodies.cuh"
 
@@ -257,21 +260,22 @@ TEST(ContactPointsOfTheGpu, PushBodiesAsOnTheHost)
   }
 }
 
-// The threads of several warps in several blocks add the forces of points on three bodies, of which no point touches the
-// last; then a warp moves each body. Forces are multiples of 1/8 N, so that any order of addition gives the same sum.
+// The threads of several warps in several blocks add the forces of points on three bodies, of which no point touches
+// the last; then a warp moves each body. Forces are multiples of 1/8 N, so that any order of addition gives the same
+// sum.
 TEST(ContactPointsOfTheGpu, AddTheForcesOfAllBlocks)
 {
   constexpr std::uint32_t bodies = 3, threads = 96, blocks = 40;
   std::vector<PushedBody> body;
   for (std::uint32_t i = 0; i < bodies; ++i)
     body.push_back({ { 1e-3 * (i + 1), 20, 0.1, { 0, 0, -0.5 } }, static_cast<std::int32_t>(2 * i + 1) });
-  std::vector<physics::PushedMotion<double>> motions(
-      bodies, { { 0, 0, 1e-3 }, { 0, 0, 2e-3 }, { 0.1, 0, 0 }, dt, dt });
+  std::vector<physics::PushedMotion<double>> motions(bodies, { { 0, 0, 1e-3 }, { 0, 0, 2e-3 }, { 0.1, 0, 0 }, dt, dt });
   const std::vector<physics::Vec3<double>> held_at(bodies, { 0, 1e-3, 2e-3 });
   std::vector<physics::Vec3<double>> reactions(bodies * blocks, { 1, 1, 1 }), sums(bodies, { 0, 0, 0 });
   std::vector<float4> poses(3 * (2 * bodies + 1), float4{ 0, 0, 0, 0 });
-  const PushedBodies pushed{ body.data(),  bodies,         blocks,          poses.data(),
-                             held_at.data(), motions.data(), reactions.data() };
+  const PushedBodies pushed{
+    body.data(), bodies, blocks, poses.data(), held_at.data(), motions.data(), reactions.data()
+  };
   std::mt19937 random(3);
   for (std::uint32_t block = 0; block < blocks; ++block)
   {
@@ -297,8 +301,8 @@ TEST(ContactPointsOfTheGpu, AddTheForcesOfAllBlocks)
   {
     const auto expected = moved_on(body[i].law, motions[i], sums[i], held_at[i]);
     BlockOnHost([&] { move_body(pushed, i, 0, 2 * dt, 2 * bodies + 1); });
-    for (const auto& [found, right] : { std::pair(motions[i].centre, expected.centre),
-                                        std::pair(motions[i].velocity, expected.velocity) })
+    for (const auto& [found, right] :
+         { std::pair(motions[i].centre, expected.centre), std::pair(motions[i].velocity, expected.velocity) })
     {
       EXPECT_EQ(found.x, right.x) << i;
       EXPECT_EQ(found.y, right.y) << i;

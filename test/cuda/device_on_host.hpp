@@ -12,7 +12,7 @@
 
 #define __noinline__
 #undef __shared__
-#define __shared__ static  // blocks run one after another
+#define __shared__
 #define threadIdx BlockOnHost::thread()
 #define blockDim BlockOnHost::size()
 static inline void __syncthreads() { BlockOnHost::barrier(); }

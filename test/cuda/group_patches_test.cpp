@@ -21,9 +21,6 @@
 
 #undef __launch_bounds__
 #define __launch_bounds__(...)
-// the kernel declares its shared memory `all` as external
-#undef __shared__
-#define __shared__
 static const dim3 blockIdx(0), gridDim(1);
 namespace frontalis
 {

@@ -2,6 +2,7 @@
 
 #include "backends.hpp"
 #include "contact_model.hpp"
+#include "nodal_vectors.hpp"
 
 #include "frontalis/solver/rigid_motion.hpp"
 
@@ -13,8 +14,6 @@ namespace frontalis
 namespace test
 {
 
-using Vectors = std::vector<std::array<double, 3>>;
-
 constexpr double degree = 3.14159265358979 / 180;
 
 class BodiesTouch : public EveryBackend
@@ -25,13 +24,6 @@ protected:
     return make_solver(std::make_shared<const Model>(model), { GetParam(), threads, time_step, ledger });
   }
 };
-
-inline Vectors displacements(const Solver& solver)
-{
-  Vectors u;
-  solver.displacements(u);
-  return u;
-}
 
 inline double mean(const Vectors& vectors, std::size_t axis)
 {

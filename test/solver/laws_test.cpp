@@ -1,14 +1,14 @@
 #include "block_model.hpp"
 #include "frontalis/physics/materials/lookup.hpp"
 #include "frontalis/solver/solver.hpp"
+#include "nodal_vectors.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
 
 using namespace frontalis;
-using Vectors = std::vector<std::array<double, 3>>;
+using test::Vectors;
 
 namespace
 {
@@ -48,17 +48,6 @@ Model mixed_block(Law law, const std::array<std::int32_t, 3>& voxels)
   return model;
 }
 
-Vectors random_displacements(const Model& model, double amplitude)
-{
-  std::mt19937 random(7);
-  std::uniform_real_distribution<double> value(-amplitude, amplitude);
-  Vectors u(model.nodes.size());
-  for (auto& v : u)
-    for (auto& c : v)
-      c = value(random);
-  return u;
-}
-
 std::string law_name(const testing::TestParamInfo<std::tuple<Backend, Law>>& info)
 {
   return std::get<0>(info.param) + "_" + physics::description_of(std::get<1>(info.param)).name;
@@ -80,7 +69,7 @@ TEST_P(Laws, ForcesAreTheGradientOfTheEnergy)
   const Model model = mixed_block(std::get<1>(GetParam()), { { 5, 2, 2 } });
   const auto energies = make_solver(std::make_shared<const Model>(model), { "reference", 0, 0 });
   const auto solver_ = solver(model);
-  const Vectors u = random_displacements(model, 1.5e-4);
+  const Vectors u = test::random_vectors(model, 1.5e-4, 7);
   solver_->set_displacements(u);
   Vectors f;
   solver_->internal_forces(f);
@@ -124,7 +113,7 @@ TEST_P(Laws, ForcesTurnWithTheBody)
     test::add_muscle(model, { { 0.8f, 0, 0.6f } }, muscle);
     const auto solver_ = solver(model);
     solver_->advance(1e-9, { { 0.7f }, {} });
-    const Vectors u = random_displacements(model, 1.5e-4);
+    const Vectors u = test::random_vectors(model, 1.5e-4, 7);
     Vectors turned = u, f, f_turned;
     for (std::size_t n = 0; n < u.size(); ++n)
     {
@@ -163,7 +152,7 @@ TEST_P(Laws, AVoxelsOwnDirectionsGoBeforeTheMaterials)
   turned.materials[1].parameters[physics::first_direction + 1] = 0.6;
   turned.materials[1].parameters[physics::first_direction + 2] = 0.8;
   own.material_directions.assign(own.voxels.size(), { 0, 0.6f, 0.8f, 0, 0, 0 });
-  const Vectors u = random_displacements(own, 1.5e-4);
+  const Vectors u = test::random_vectors(own, 1.5e-4, 7);
   Vectors f[2];
   for (const auto& [model, out] : { std::pair{ &own, &f[0] }, { &turned, &f[1] } })
   {
@@ -185,7 +174,7 @@ TEST_P(Laws, ComesBackToRestFromALargeDistortion)
   const Model model = mixed_block(std::get<1>(GetParam()), { { 6, 3, 3 } });
   const auto solver_ = solver(model);
   // Moves every node by up to 0.4 voxels, so that some voxels keep little more than half of their volume.
-  solver_->set_displacements(random_displacements(model, 4e-4));
+  solver_->set_displacements(test::random_vectors(model, 4e-4, 7));
   const Monitor before = solver_->monitor();
   for (int i = 0; i < 10; ++i)
     solver_->advance(5e-3, {});
@@ -210,7 +199,7 @@ TEST_P(Laws, CrushedAndInvertedVoxelsPushBack)
       test::add_muscle(model, { { 0.8f, 0, 0.6f } }, muscle);
       const auto solver_ = solver(model);
       solver_->advance(1e-9, { { static_cast<float>(activation) }, {} });
-      const Vectors u = random_displacements(model, 1.2e-3);
+      const Vectors u = test::random_vectors(model, 1.2e-3, 7);
       solver_->set_displacements(u);
       EXPECT_LT(solver_->monitor().worst_jacobian, -0.2);
       Vectors f;

@@ -2,6 +2,7 @@
 
 #include "backends.hpp"
 #include "contact_model.hpp"
+#include "nodal_vectors.hpp"
 #include "shell_model.hpp"
 
 #include "frontalis/model/effects.hpp"
@@ -16,7 +17,6 @@ namespace
 {
 
 using namespace test;
-using Vectors = std::vector<std::array<double, 3>>;
 
 class ShellBackend : public testing::TestWithParam<Backend>
 {
@@ -42,13 +42,6 @@ Model film_on_block(bool free = true, double young = 1e6)
   add_shell(model, film);
   check_model(model);
   return model;
-}
-
-Vectors displacements(const Solver& solver)
-{
-  Vectors u;
-  solver.displacements(u);
-  return u;
 }
 
 // Velocities that bend, stretch and shear the film.
