@@ -73,6 +73,14 @@ inline void add_muscle(Model& model, const std::array<float, 3>& direction, cons
   }
 }
 
+/// Holds the nodes of a plane of the grid, which is normal to an axis.
+inline void hold_plane(Model& model, std::size_t axis, std::int32_t bone = -1, std::int32_t place = 0)
+{
+  for (std::size_t n = 0; n < model.nodes.size(); ++n)
+    if (model.nodes[n][axis] == place)
+      model.rigid.push_back({ static_cast<std::int32_t>(n), bone });
+}
+
 /// Rest position of a node [m].
 inline std::array<double, 3> rest(const Model& model, std::size_t node) { return rest_position(model, node); }
 

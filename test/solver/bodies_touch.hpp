@@ -45,9 +45,7 @@ inline Model block_and_finger(double friction, bool sampled = false)
   settings.voxels = { { 10, 8, 4 } };
   settings.damping = 100;
   Model model = block_model(settings);
-  for (std::size_t n = 0; n < model.nodes.size(); ++n)
-    if (model.nodes[n][2] == 0)
-      model.rigid.push_back({ static_cast<std::int32_t>(n) });
+  hold_plane(model, 2);
   model.bones = { "other", "finger" };
   const double radius = 4e-3;
   const std::array<double, 3> centre{ { 4e-3, 4e-3, 8.2e-3 } };

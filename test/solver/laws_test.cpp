@@ -48,6 +48,16 @@ Model mixed_block(Law law, const std::array<std::int32_t, 3>& voxels)
   return model;
 }
 
+// A muscle in all voxels.
+void add_strand(Model& model)
+{
+  Muscle muscle;
+  muscle.name = "strand";
+  muscle.stress_reference = 20e3;
+  muscle.passive = true;
+  test::add_muscle(model, { { 0.8f, 0, 0.6f } }, muscle);
+}
+
 std::string law_name(const testing::TestParamInfo<std::tuple<Backend, Law>>& info)
 {
   return std::get<0>(info.param) + "_" + physics::description_of(std::get<1>(info.param)).name;
@@ -106,11 +116,7 @@ TEST_P(Laws, ForcesTurnWithTheBody)
   {
     Model model = mixed_block(std::get<1>(GetParam()), { { 5, 2, 2 } });
     model.hourglass = hourglass;
-    Muscle muscle;
-    muscle.name = "strand";
-    muscle.stress_reference = 20e3;
-    muscle.passive = true;
-    test::add_muscle(model, { { 0.8f, 0, 0.6f } }, muscle);
+    add_strand(model);
     const auto solver_ = solver(model);
     solver_->advance(1e-9, { { 0.7f }, {} });
     const Vectors u = test::random_vectors(model, 1.5e-4, 7);
@@ -192,11 +198,7 @@ TEST_P(Laws, CrushedAndInvertedVoxelsPushBack)
     {
       Model model = mixed_block(std::get<1>(GetParam()), { { 6, 3, 3 } });
       model.integration = integration;
-      Muscle muscle;
-      muscle.name = "strand";
-      muscle.stress_reference = 20e3;
-      muscle.passive = true;
-      test::add_muscle(model, { { 0.8f, 0, 0.6f } }, muscle);
+      add_strand(model);
       const auto solver_ = solver(model);
       solver_->advance(1e-9, { { static_cast<float>(activation) }, {} });
       const Vectors u = test::random_vectors(model, 1.2e-3, 7);

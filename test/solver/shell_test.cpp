@@ -34,9 +34,8 @@ Model film_on_block(bool free = true, double young = 1e6)
   BlockSettings settings;
   settings.voxels = { { 7, 6, 4 } };
   Model model = block_model(settings);
-  for (std::size_t n = 0; n < model.nodes.size() && !free; ++n)
-    if (model.nodes[n][2] == 0)
-      model.rigid.push_back({ static_cast<std::int32_t>(n) });
+  if (!free)
+    hold_plane(model, 2);
   ShellSettings film;
   film.young = young;
   add_shell(model, film);
