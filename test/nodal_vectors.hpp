@@ -2,9 +2,12 @@
 
 #include "frontalis/solver/solver.hpp"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <random>
 #include <vector>
 
@@ -43,6 +46,32 @@ inline Vectors displacements(const Solver& solver)
   Vectors u;
   solver.displacements(u);
   return u;
+}
+
+/// Checks the internal forces of a solver against differences of the energy, at every `stride`-th node. Energies are
+/// those of the reference in double precision.
+inline void expect_forces_from_energy(const Model& model, Solver& solver, const Vectors& u, std::size_t stride = 1)
+{
+  const auto energies = make_solver(std::make_shared<const Model>(model), { "reference", 0, 0 });
+  solver.set_displacements(u);
+  Vectors f;
+  solver.internal_forces(f);
+  const double most = largest(f), step = 1e-8;
+  EXPECT_GT(most, 0);
+  for (std::size_t n = 0; n < u.size(); n += stride)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+      double energy[2];
+      for (const int side : { 0, 1 })
+      {
+        Vectors moved = u;
+        moved[n][axis] += side == 0 ? -step : step;
+        energies->set_displacements(moved);
+        const Monitor m = energies->monitor();
+        energy[side] = m.internal + m.hourglass;
+      }
+      EXPECT_NEAR(f[n][axis], (energy[1] - energy[0]) / (2 * step), most * 2e-5) << n << " " << axis;
+    }
 }
 
 }  // namespace test

@@ -83,27 +83,7 @@ TEST_P(CutVoxels, ForcesAreTheGradientOfTheEnergy)
   for (const auto hourglass : { HourglassControl::scalar, HourglassControl::assumed_strain })
   {
     const Model model = cut_block(hourglass);
-    const auto energies = make_solver(std::make_shared<const Model>(model), { "reference", 0, 0 });
-    const auto solver_ = solver(model);
-    const Vectors u = test::random_vectors(model, 1.5e-4);
-    solver_->set_displacements(u);
-    Vectors f;
-    solver_->internal_forces(f);
-    const double step = 1e-8;
-    for (std::size_t n = 0; n < u.size(); n += 3)
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        double energy[2];
-        for (int side = 0; side < 2; ++side)
-        {
-          Vectors moved = u;
-          moved[n][axis] += side == 0 ? -step : step;
-          energies->set_displacements(moved);
-          const Monitor m = energies->monitor();
-          energy[side] = m.internal + m.hourglass;
-        }
-        EXPECT_NEAR(f[n][axis], (energy[1] - energy[0]) / (2 * step), test::largest(f) * 2e-5) << n << " " << axis;
-      }
+    test::expect_forces_from_energy(model, *solver(model), test::random_vectors(model, 1.5e-4), 3);
   }
 }
 

@@ -77,32 +77,7 @@ protected:
 TEST_P(Laws, ForcesAreTheGradientOfTheEnergy)
 {
   const Model model = mixed_block(std::get<1>(GetParam()), { { 5, 2, 2 } });
-  const auto energies = make_solver(std::make_shared<const Model>(model), { "reference", 0, 0 });
-  const auto solver_ = solver(model);
-  const Vectors u = test::random_vectors(model, 1.5e-4, 7);
-  solver_->set_displacements(u);
-  Vectors f;
-  solver_->internal_forces(f);
-  double largest = 0;
-  for (const auto& v : f)
-    for (const double c : v)
-      largest = std::max(largest, std::abs(c));
-  ASSERT_GT(largest, 0);
-  const double step = 1e-8;
-  for (std::size_t n = 0; n < u.size(); ++n)
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      double energy[2];
-      for (int side = 0; side < 2; ++side)
-      {
-        Vectors moved = u;
-        moved[n][axis] += side == 0 ? -step : step;
-        energies->set_displacements(moved);
-        const Monitor m = energies->monitor();
-        energy[side] = m.internal + m.hourglass;
-      }
-      ASSERT_NEAR(f[n][axis], (energy[1] - energy[0]) / (2 * step), largest * 2e-5) << n << " " << axis;
-    }
+  test::expect_forces_from_energy(model, *solver(model), test::random_vectors(model, 1.5e-4, 7));
 }
 
 // If a body with muscle everywhere is rotated as a whole, its forces rotate with it.
