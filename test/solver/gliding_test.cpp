@@ -82,12 +82,8 @@ Model block_on_plane(double degrees, double friction)
   s.voxels = { { 6, 4, 2 } };
   s.damping = 50;
   Model model = test::block_model(s);
-  std::vector<std::int32_t> underside;
-  for (std::size_t n = 0; n < model.nodes.size(); ++n)
-    if (model.nodes[n][2] == 0)
-      underside.push_back(static_cast<std::int32_t>(n));
   slide_on(
-      model, "plane", [](const auto& p) { return p[2] + 1e-4; }, underside, 10e-3, 0.5);
+      model, "plane", [](const auto& p) { return p[2] + 1e-4; }, test::plane_of_nodes(model, 2), 10e-3, 0.5);
   model.constraint_surfaces[0].friction = friction;
   const double angle = degrees * 3.14159265358979 / 180;
   model.gravity = { { gravity * std::sin(angle), 0, -gravity * std::cos(angle) } };
