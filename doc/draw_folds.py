@@ -16,7 +16,7 @@ FOREHEAD = (0, 0, 0.043), (1, 0, 0.084), 0.05
 BROWS = (0, 0, 0.014), (1, 0, 0.1), 0.032
 VIEWS = {"above": ((0.25, 0.35, 1.0), *FOREHEAD), "left": ((0.35, 1.0, 0.2), *FOREHEAD),
          "brows": ((0.4, 0.9, 0.45), *BROWS), "root": ((0.4, 0.2, 1.0), *BROWS),
-         "eye": ((0.5, 0.1, 1.0), (-0.015, 0.05, -0.01), (0.7, 0.7, 0.1), 0.026)}
+         "eye": ((0.9, 0.3, 0.8), (-0.015, 0.05, -0.01), (0.7, 0.7, 0.1), 0.026)}
 
 
 def read(path):
@@ -52,7 +52,7 @@ def draw(meshes, picture):
         renderer.SetBackground(1, 1, 1)
         renderer.AddActor(actor)
         renderer.AutomaticLightCreationOff()
-        for place, strength in ((light_from, 1.0), (towards, 0.18)):
+        for place, strength in ((light_from, 0.85), (towards, 0.3)):
             light = vtk.vtkLight()
             light.SetLightTypeToSceneLight()
             light.SetPosition(*place)

@@ -73,6 +73,23 @@ inline void add_muscle(Model& model, const std::array<float, 3>& direction, cons
   }
 }
 
+/// The nodes of a plane of the grid, which is normal to an axis.
+inline std::vector<std::int32_t> plane_of_nodes(const Model& model, std::size_t axis, std::int32_t place = 0)
+{
+  std::vector<std::int32_t> nodes;
+  for (std::size_t n = 0; n < model.nodes.size(); ++n)
+    if (model.nodes[n][axis] == place)
+      nodes.push_back(static_cast<std::int32_t>(n));
+  return nodes;
+}
+
+/// Holds the nodes of such a plane.
+inline void hold_plane(Model& model, std::size_t axis, std::int32_t bone = -1, std::int32_t place = 0)
+{
+  for (const auto node : plane_of_nodes(model, axis, place))
+    model.rigid.push_back({ node, bone });
+}
+
 /// Rest position of a node [m].
 inline std::array<double, 3> rest(const Model& model, std::size_t node) { return rest_position(model, node); }
 

@@ -1,8 +1,7 @@
 #pragma once
 
-#include "frontalis/solver/solver.hpp"
+#include "nodal_vectors.hpp"
 
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <memory>
@@ -12,8 +11,6 @@ namespace frontalis
 {
 namespace test
 {
-
-using Vectors = std::vector<std::array<double, 3>>;
 
 // Largest eigenvalue of a symmetric matrix, by power iteration with a shift that makes the matrix positive definite.
 inline double largest_eigenvalue(const std::vector<std::vector<double>>& K)

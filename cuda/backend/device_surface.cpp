@@ -101,19 +101,12 @@ DeviceLoads::DeviceLoads(const Model& model, const Discretisation& discretisatio
       pressures_.push_back({ DeviceSurface(model, device_node, load.mesh.vertices, load.binding, load.mesh.triangles),
                              load.value[0], first });
     else
-      for (const auto& t : load.mesh.triangles)
-      {
-        const auto corner = [&](int c)
-        {
-          const auto& v = load.mesh.vertices[t[c]];
-          return physics::Vec3<double>{ v[0], v[1], v[2] };
-        };
-        // Each corner takes a third of the area times the traction.
-        const double share = norm(cross(corner(1) - corner(0), corner(2) - corner(0))) / 6;
-        for (const auto v : t)
-          for (int axis = 0; axis < 3; ++axis)
-            force[3 * (first + v) + axis] += share * load.value[axis];
-      }
+    {
+      const std::vector<double> area = vertex_areas(load.mesh);
+      for (std::size_t v = 0; v < area.size(); ++v)
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          force[3 * (first + v) + axis] = area[v] * load.value[axis];
+    }
     for (std::size_t v = 0; v < load.binding.voxel.size(); ++v)
     {
       const auto& c = load.binding.coordinates[v];

@@ -26,7 +26,7 @@ struct StabilityOptions
   std::vector<std::string> only;
   StabilitySettings settings;
   std::string cases, json, table, markdown, models;
-  std::string scenes;          ///< folder of the cases; empty: found by stability_folder()
+  std::string scenes;          ///< folder of the cases' scenes; empty: found by stability_scene()
   std::string mesh_directory;  ///< folder of the meshes of the real head and face
 };
 
@@ -58,8 +58,13 @@ std::shared_ptr<const Model> stability_scene(const StabilityOptions& options, co
   const bool real = name == "real_head" || name == "real_face";
   if (real && options.mesh_directory.empty())
     throw Skipped{ "needs meshes (--mesh-dir)" };
-  const std::vector<fs::path> given{ options.scenes };
-  for (const fs::path& folder : options.scenes.empty() ? folders("config", "models/stability", "config") : given)
+  std::vector<fs::path> places{ options.scenes };
+  if (options.scenes.empty())
+  {
+    places = folders("config", "models/stability", "config");
+    places.push_back(fs::path(stability_folder(options.cases)) / "scenes");
+  }
+  for (const fs::path& folder : places)
   {
     const fs::path model = folder / (name + ".vtkhdf");
     if (fs::exists(model))

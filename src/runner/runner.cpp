@@ -68,13 +68,6 @@ void Runner::set_expression(const std::string& name)
   take_pose(*self_->model, pose, self_->target);
 }
 
-void Runner::set_action_units(const std::map<std::string, double>& intensities)
-{
-  const Controls pose = action_unit_controls(*self_->model, intensities);
-  const std::lock_guard<std::mutex> lock(self_->mutex);
-  take_pose(*self_->model, pose, self_->target);
-}
-
 void Runner::set_bone(const std::string& name, const RigidTransform& motion)
 {
   const std::lock_guard<std::mutex> lock(self_->mutex);

@@ -6,13 +6,10 @@
 #include "frontalis/model/sample_field.hpp"
 
 #include "bake/scene_pieces.hpp"
+#include "files.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <numeric>
 
 namespace
@@ -98,15 +95,13 @@ TEST(BakedContact, WhatCannotBeIsRefused)
   scene.surfaces[2].shape->centre[2] = 12e-3;
   EXPECT_EQ(fault_of(scene).find("test.yaml:9: constraint 'touch': at rest its surface lies"), 0u) << fault_of(scene);
   scene = touched_block();
-  const std::string folder = std::filesystem::temp_directory_path() / ("contact_test_" + std::to_string(::getpid()));
-  std::filesystem::create_directories(folder);
+  const TemporaryFolder folder;
   const TriangleMesh mesh{ { { { 0, 0, 12e-3 } }, { { 9e-3, 0, 12e-3 } }, { { 0, 9e-3, 12e-3 } } },
                            { { { 0, 1, 2 } } } };
-  write_obj(mesh, folder + "/sheet.obj", [](const auto&) { return true; });
-  scene.surfaces.push_back(file_surface("sheet", folder + "/sheet.obj"));
+  write_obj(mesh, folder / "sheet.obj", [](const auto&) { return true; });
+  scene.surfaces.push_back(file_surface("sheet", folder / "sheet.obj"));
   scene.constraints[0].surfaces = { "sheet" };
   EXPECT_EQ(fault_of(scene).find("test.yaml:9: constraint 'touch': surface 'sheet' is open"), 0u) << fault_of(scene);
-  std::filesystem::remove_all(folder);
 }
 
 TEST(BakedContact, WhatIsOnlyShownContinuesTheSkinAndTouchesNothing)
@@ -190,13 +185,11 @@ TEST(BakedContact, ACropOfWhatIsOnlyShownNeedsASkinThatIsCroppedToo)
 
 TEST(BakedContact, AFileGivesItBackAndHoldsNothingWithoutIt)
 {
-  const std::string folder = std::filesystem::temp_directory_path() / ("contact_file_" + std::to_string(::getpid()));
-  std::filesystem::create_directories(folder);
+  const TemporaryFolder folder;
   const auto bytes_of = [&](const Model& model)
   {
-    write_model(model, folder + "/model.vtkhdf");
-    std::ifstream in(folder + "/model.vtkhdf", std::ios::binary);
-    return std::string(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
+    write_model(model, folder / "model.vtkhdf");
+    return text_of(folder / "model.vtkhdf");
   };
   Scene scene = touched_block();
   scene.constraints[0].surfaces = { "plate" };
@@ -205,7 +198,7 @@ TEST(BakedContact, AFileGivesItBackAndHoldsNothingWithoutIt)
   Model model = bake(scene);
   const std::string whole = bytes_of(model);
   EXPECT_NE(whole.find("contacts"), std::string::npos);
-  const Model read = read_model(folder + "/model.vtkhdf");
+  const Model read = read_model(folder / "model.vtkhdf");
   ASSERT_EQ(read.contacts.size(), 1u);
   const Contact &a = model.contacts[0], &b = read.contacts[0];
   EXPECT_EQ(a.name, b.name);
@@ -231,11 +224,10 @@ TEST(BakedContact, AFileGivesItBackAndHoldsNothingWithoutIt)
   EXPECT_EQ(bytes_of(read), whole);
   model.contacts.clear();
   EXPECT_EQ(bytes_of(model).find("contacts"), std::string::npos);
-  EXPECT_TRUE(read_model(folder + "/model.vtkhdf").contacts.empty());
+  EXPECT_TRUE(read_model(folder / "model.vtkhdf").contacts.empty());
   model = read;
   model.contacts[0].area.pop_back();
   EXPECT_THROW(check_model(model), Error);
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

@@ -1,14 +1,11 @@
 // the film of a skin: edges that resolve its lines, on a smooth surface, and what it is refused for
 
+#include "files.hpp"
 #include "scene_pieces.hpp"
 
 #include "frontalis/model/model_file.hpp"
 
 #include <gtest/gtest.h>
-
-#include <unistd.h>
-
-#include <filesystem>
 
 namespace frontalis
 {
@@ -29,19 +26,6 @@ Scene ball_with_film()
   scene.films = { SceneFilm{ "film", 0.1e-3, scene.materials.front().name, 0.02, Region() } };
   scene.films[0].crop.lower[2] = 0;
   return scene;
-}
-
-std::string error_of(const Scene& scene)
-{
-  try
-  {
-    bake(scene);
-  }
-  catch (const Error& error)
-  {
-    return error.what();
-  }
-  return "";
 }
 
 TEST(BakeFilm, halves_edges_where_lines_are_wanted_and_keeps_the_surface_smooth)
@@ -120,11 +104,9 @@ TEST(BakeFilm, is_the_same_in_the_model_file)
 {
   Model model = bake(ball_with_film());
   model.film.crease.assign(model.skin.vertices.size(), 1e-5F);
-  const std::string file =
-      (std::filesystem::temp_directory_path() / ("film_test_" + std::to_string(::getpid()))).string();
-  write_model(model, file);
-  const SkinFilm film = read_model(file).film;
-  std::filesystem::remove(file);
+  const TemporaryFolder folder;
+  write_model(model, folder / "film.vtkhdf");
+  const SkinFilm film = read_model(folder / "film.vtkhdf").film;
   EXPECT_EQ(film.laws[0].thickness, model.film.laws[0].thickness);
   EXPECT_EQ(film.laws[0].modulus, model.film.laws[0].modulus);
   EXPECT_EQ(film.laws[0].poisson, model.film.laws[0].poisson);
@@ -140,13 +122,13 @@ TEST(BakeFilm, must_be_stiff_and_have_lines_that_can_be_resolved_on_the_skin)
 {
   Scene soft = ball_with_film();
   soft.films[0].material = soft.films[0].base;
-  EXPECT_NE(error_of(soft).find("at least 10 times as stiff"), std::string::npos) << error_of(soft);
+  EXPECT_NE(fault_of(soft).find("at least 10 times as stiff"), std::string::npos) << fault_of(soft);
   Scene thin = ball_with_film();
   thin.films[0].thickness = 1e-6;
-  EXPECT_NE(error_of(thin).find("million vertices"), std::string::npos) << error_of(thin);
+  EXPECT_NE(fault_of(thin).find("million vertices"), std::string::npos) << fault_of(thin);
   Scene beside = ball_with_film();
   beside.films[0].crop.lower[2] = 2 * radius;
-  EXPECT_NE(error_of(beside).find("skin: fine_lines: crop: no triangle"), std::string::npos) << error_of(beside);
+  EXPECT_NE(fault_of(beside).find("skin: fine_lines: crop: no triangle"), std::string::npos) << fault_of(beside);
 }
 
 }  // namespace

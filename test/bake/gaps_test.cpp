@@ -4,11 +4,10 @@
 #include "frontalis/model/model_file.hpp"
 
 #include "bake/scene_pieces.hpp"
+#include "files.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <filesystem>
 #include <numeric>
 #include <set>
 
@@ -46,8 +45,8 @@ Scene two_blocks(double gap, const std::string& gaps, double height = 7.3e-3)
 Scene slit_block(double z, double voxel = 3e-3, bool slit = true)
 {
   Scene scene = plain_scene(voxel);
-  const std::string file =
-      std::filesystem::temp_directory_path() / ("slit" + std::to_string(getpid()) + std::to_string(z) + ".obj");
+  static const TemporaryFolder folder;
+  const std::string file = folder / ("slit" + std::to_string(z) + ".obj");
   TriangleMesh mesh;
   for (const double x : { -1e-3, 12e-3 })
     for (const double y : { -1e-3, 13e-3 })
@@ -234,12 +233,12 @@ TEST(Gaps, WithoutAGapNothingChanges)
   scene.accuracy.gaps = "parted";
   Model parted = bake(scene);
   parted.scene_hash = glued.scene_hash;
-  const std::string file = std::filesystem::temp_directory_path() / ("gaps" + std::to_string(getpid()));
+  const TemporaryFolder folder;
+  const std::string file = folder / "gaps.vtkhdf";
   const auto bytes = [&](const Model& model)
   {
     write_model(model, file);
-    std::ifstream in(file, std::ios::binary);
-    return std::string(std::istreambuf_iterator<char>(in), {});
+    return text_of(file);
   };
   EXPECT_EQ(bytes(glued), bytes(parted));
   // a model with flaps is read as it was written

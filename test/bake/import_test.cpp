@@ -6,12 +6,11 @@
 #include "frontalis/error.hpp"
 
 #include "bake/scene_pieces.hpp"
+#include "files.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cstdio>
-#include <filesystem>
 #include <fstream>
 
 namespace
@@ -45,17 +44,10 @@ TriangleMesh together(TriangleMesh a, const TriangleMesh& b)
 class Import : public testing::Test
 {
 protected:
-  void SetUp() override
-  {
-    folder_ = std::filesystem::temp_directory_path() / ("frontalis_import_test_" + std::to_string(::getpid()));
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   /// Writes the mesh with coordinates in millimetres and loads it.
   LoadedSurface load(const TriangleMesh& mesh) const
   {
-    const std::string file = (folder_ / "mesh.obj").string();
+    const std::string file = folder_ / "mesh.obj";
     std::ofstream out(file);
     char line[128];
     for (const Vector3& v : mesh.vertices)
@@ -79,7 +71,7 @@ protected:
     return false;
   }
 
-  std::filesystem::path folder_;
+  TemporaryFolder folder_;
 };
 
 TEST_F(Import, AGoodMeshHasNoFindings)

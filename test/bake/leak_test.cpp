@@ -1,12 +1,11 @@
 #include "bake/mesh/surface.hpp"
 
 #include "bake/scene_pieces.hpp"
+#include "files.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <filesystem>
 
 namespace
 {
@@ -16,13 +15,6 @@ using namespace frontalis;
 class OpenSurfaces : public testing::Test
 {
 protected:
-  void SetUp() override
-  {
-    folder_ = std::filesystem::temp_directory_path() / ("frontalis_leak_test_" + std::to_string(::getpid()));
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   /// Writes a sphere without the triangles that have a vertex (on the unit sphere) for which `leave` is true.
   template <class Leave>
   Surface sphere_file(const std::string& name, double radius, const Leave& leave) const
@@ -31,11 +23,11 @@ protected:
     join_vertices(mesh);
     const auto keep = [&](const Triangle& t)
     { return std::none_of(t.begin(), t.end(), [&](std::int32_t v) { return leave(mesh.vertices[v]); }); };
-    write_obj(mesh, (folder_ / (name + ".obj")).string(), keep);
-    return file_surface(name, (folder_ / (name + ".obj")).string(), radius);
+    write_obj(mesh, folder_ / (name + ".obj"), keep);
+    return file_surface(name, folder_ / (name + ".obj"), radius);
   }
 
-  std::filesystem::path folder_;
+  TemporaryFolder folder_;
 };
 
 TEST_F(OpenSurfaces, AHeadOpenAtTheNeckHoldsItsTissue)
@@ -75,11 +67,11 @@ TEST_F(OpenSurfaces, DepthsEndAtTheBone)
   TriangleMesh inner = make_shape(*sphere_surface("", { 0, 0, 0 }, 13, 0.8).shape);
   flip(inner);
   append(shell, inner);
-  write_obj(shell, (folder_ / "bone.obj").string(), [](const Triangle&) { return true; });
+  write_obj(shell, folder_ / "bone.obj", [](const Triangle&) { return true; });
 
   Scene scene = plain_scene(1e-3);
   scene.surfaces = { sphere_surface("skin", { 0, 0, 0 }, 20e-3, 0.8e-3),
-                     file_surface("bone", (folder_ / "bone.obj").string(), 1e-3) };
+                     file_surface("bone", folder_ / "bone.obj", 1e-3) };
   scene.volumes = { volume_inside("tissue", { "skin" }, "fat", true) };
   scene.volumes[0].outside = { "bone" };
   const auto ball = [](double r) { return 4.0 / 3 * pi * r * r * r; };

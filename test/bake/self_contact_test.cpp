@@ -6,12 +6,11 @@
 #include "frontalis/physics/number.hpp"
 
 #include "bake/scene_pieces.hpp"
+#include "files.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <numeric>
 
 namespace
@@ -90,12 +89,10 @@ TEST(BakedSelfContact, what_cannot_be_is_refused)
 
 TEST(BakedSelfContact, a_file_gives_it_back)
 {
-  const std::string folder =
-      std::filesystem::temp_directory_path() / ("self_contact_test_" + std::to_string(::getpid()));
-  std::filesystem::create_directories(folder);
+  const TemporaryFolder folder;
   Model model = bake(two_blocks());
-  write_model(model, folder + "/model.vtkhdf");
-  const Model read = read_model(folder + "/model.vtkhdf");
+  write_model(model, folder / "model.vtkhdf");
+  const Model read = read_model(folder / "model.vtkhdf");
   ASSERT_EQ(read.self_contacts.size(), 1u);
   const SelfContact &a = model.self_contacts[0], &b = read.self_contacts[0];
   EXPECT_EQ(a.name, b.name);
@@ -105,12 +102,11 @@ TEST(BakedSelfContact, a_file_gives_it_back)
   EXPECT_EQ(a.binding.voxel, b.binding.voxel);
   EXPECT_EQ(a.binding.coordinates, b.binding.coordinates);
   model.self_contacts.clear();
-  write_model(model, folder + "/model.vtkhdf");
-  EXPECT_TRUE(read_model(folder + "/model.vtkhdf").self_contacts.empty());
+  write_model(model, folder / "model.vtkhdf");
+  EXPECT_TRUE(read_model(folder / "model.vtkhdf").self_contacts.empty());
   model = read;
   model.self_contacts[0].binding.voxel.pop_back();
   EXPECT_THROW(check_model(model), Error);
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

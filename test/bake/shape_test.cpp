@@ -4,13 +4,11 @@
 #include "frontalis/error.hpp"
 
 #include "bake/scene_pieces.hpp"
+#include "files.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
 
 namespace
 {
@@ -71,17 +69,6 @@ TEST(BuiltInShape, RefusesSizesThatMakeNoBody)
 class MeshFile : public testing::Test
 {
 protected:
-  void SetUp() override
-  {
-    folder_ = std::filesystem::temp_directory_path() / ("frontalis_mesh_file_test_" + std::to_string(::getpid()));
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-  std::string write(const std::string& name, const std::string& text) const
-  {
-    std::ofstream(folder_ / name) << text;
-    return (folder_ / name).string();
-  }
   std::string fault(const std::string& file) const
   {
     try
@@ -94,12 +81,12 @@ protected:
     }
     return "";
   }
-  std::filesystem::path folder_;
+  TemporaryFolder folder_;
 };
 
 TEST_F(MeshFile, QuadsAreSplitAndUnitsApplied)
 {
-  const std::string file = write("quad.obj", "v 0 0 0\nv 2 0 0\nv 2 3 0\nv 0 3 0\nf 1 2 3 4\n");
+  const std::string file = folder_.write("quad.obj", "v 0 0 0\nv 2 0 0\nv 2 3 0\nv 0 3 0\nf 1 2 3 4\n");
   const TriangleMesh mesh = joined(import_mesh(file, 1e-3));
   EXPECT_EQ(mesh.triangles.size(), 2u);
   ASSERT_EQ(mesh.vertices.size(), 4u);
@@ -108,14 +95,16 @@ TEST_F(MeshFile, QuadsAreSplitAndUnitsApplied)
 
 TEST_F(MeshFile, StlPlyAndObjGiveTheSameTriangle)
 {
-  const std::string obj = write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-  const std::string stl = write("a.stl",
-                                "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
-                                "endloop\nendfacet\nendsolid a\n");
-  const std::string ply = write("a.ply",
-                                "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
-                                "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
-                                "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  const std::string obj = folder_.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const std::string stl =
+      folder_.write("a.stl",
+                    "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+                    "endloop\nendfacet\nendsolid a\n");
+  const std::string ply =
+      folder_.write("a.ply",
+                    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                    "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+                    "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
   for (const std::string& file : { obj, stl, ply })
   {
     const TriangleMesh mesh = joined(import_mesh(file, 1));
@@ -127,11 +116,11 @@ TEST_F(MeshFile, StlPlyAndObjGiveTheSameTriangle)
 
 TEST_F(MeshFile, BadFilesAreNamedWithTheReason)
 {
-  const std::string none = (folder_ / "none.obj").string();
+  const std::string none = folder_ / "none.obj";
   EXPECT_NE(fault(none).find(none), std::string::npos);
   EXPECT_NE(fault(none).find("no such file"), std::string::npos);
-  EXPECT_NE(fault(write("text.stl", "no mesh at all")).find("text.stl"), std::string::npos);
-  const std::string lines = fault(write("lines.obj", "v 0 0 0\nv 1 0 0\nl 1 2\n"));
+  EXPECT_NE(fault(folder_.write("text.stl", "no mesh at all")).find("text.stl"), std::string::npos);
+  const std::string lines = fault(folder_.write("lines.obj", "v 0 0 0\nv 1 0 0\nl 1 2\n"));
   EXPECT_NE(lines.find("lines.obj"), std::string::npos);
   EXPECT_NE(lines.find("triangles"), std::string::npos);
   // a binary STL file whose first vertex is NaN
@@ -140,7 +129,7 @@ TEST_F(MeshFile, BadFilesAreNamedWithTheReason)
   std::string triangle(50, '\0');
   const float corners[9] = { std::nanf(""), 0, 0, 1, 0, 0, 0, 1, 0 };
   std::copy_n(reinterpret_cast<const char*>(corners), 36, triangle.begin() + 12);
-  const std::string what = fault(write("nan.stl", nan + triangle));
+  const std::string what = fault(folder_.write("nan.stl", nan + triangle));
   EXPECT_NE(what.find("nan.stl"), std::string::npos);
   EXPECT_NE(what.find("finite"), std::string::npos) << what;
 }
@@ -159,7 +148,7 @@ TEST_F(MeshFile, InsideOutAndMixedSurfacesAreTurnedAndReported)
       text += "v " + std::to_string(v[0]) + " " + std::to_string(v[1]) + " " + std::to_string(v[2]) + "\n";
     for (const Triangle& t : mesh.triangles)
       text += "f " + std::to_string(t[0] + 1) + " " + std::to_string(t[1] + 1) + " " + std::to_string(t[2] + 1) + "\n";
-    return write(name, text);
+    return folder_.write(name, text);
   };
   Scene scene = plain_scene(0.1);
   scene.surfaces = { file_surface("good", write_box("good.obj", false, false)),

@@ -1,5 +1,6 @@
 // layers that are shells: their triangles, depth and material, and the material that stays in the voxels
 
+#include "files.hpp"
 #include "scene_pieces.hpp"
 
 #include "frontalis/model/effects.hpp"
@@ -7,10 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include <unistd.h>
-
 #include <cmath>
-#include <filesystem>
 
 namespace frontalis
 {
@@ -142,11 +140,9 @@ TEST(BakeShell, is_the_same_in_the_model_file)
   Scene scene = ball_in_shells(true, false);
   scene.layers.push_back({ "fascia", "skin", "tissue", "corneum", corneum, 3, true });
   const Model model = bake(scene);
-  const std::string file =
-      (std::filesystem::temp_directory_path() / ("shell_test_" + std::to_string(::getpid()))).string();
-  write_model(model, file);
-  const Model read = read_model(file);
-  std::filesystem::remove(file);
+  const TemporaryFolder folder;
+  write_model(model, folder / "shells.vtkhdf");
+  const Model read = read_model(folder / "shells.vtkhdf");
   ASSERT_EQ(read.shells.size(), 2U);
   for (std::size_t s = 0; s < 2; ++s)
   {

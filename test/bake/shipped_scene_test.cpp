@@ -3,15 +3,14 @@
 
 #include "bake/mesh/surface.hpp"
 #include "bake/scene_pieces.hpp"
+#include "files.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 
 namespace
 {
@@ -20,12 +19,6 @@ using namespace frontalis;
 
 const std::string source = FRONTALIS_SOURCE_DIRECTORY;
 const std::string head = source + "/../shared/data/head";
-
-std::string bytes(const std::filesystem::path& file)
-{
-  std::ifstream in(file, std::ios::binary);
-  return { std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>() };
-}
 
 double volume_in_report(const BakeReport& report, const std::string& muscle, const char* after)
 {
@@ -78,8 +71,6 @@ protected:
 
   void SetUp() override
   {
-    folder_ = std::filesystem::temp_directory_path() / ("frontalis_head_test_" + std::to_string(::getpid()));
-    std::filesystem::create_directories(folder_);
     const auto all = [](const Triangle&) { return true; };
     const TriangleMesh ball = sphere(skin);
     write_obj(ball, path("skin.obj"), [&](const Triangle& t) { return ball.vertices[t[0]][2] > -0.75 * skin; });
@@ -96,12 +87,11 @@ protected:
     }
     std::ofstream(path("head.yaml")) << scene;
   }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
 
   Model bake_head(BakeReport& report, double voxel) const
   {
     SceneOptions options;
-    options.mesh_directory = folder_.string();
+    options.mesh_directory = folder_.path();
     options.voxel = voxel;
     return bake(read_scene(path("head.yaml"), options), &report);
   }
@@ -171,7 +161,7 @@ accuracy:
   standard: {voxel: 2}
 )";
 
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  std::string path(const std::string& name) const { return folder_ / name; }
   static TriangleMesh sphere(double radius)
   {
     TriangleMesh mesh = make_shape(*sphere_surface("", { 0, 0, 0 }, radius, 4).shape);
@@ -188,7 +178,7 @@ accuracy:
     return make_shape(shape);
   }
 
-  std::filesystem::path folder_;
+  TemporaryFolder folder_;
 };
 
 TEST_F(MadeHead, BakesFromMeshFiles)
@@ -267,13 +257,11 @@ TEST(ForeheadScene, BakesWithAllItsParts)
 
 TEST(ForeheadScene, BakingTwiceGivesTheSameBytes)
 {
-  const auto folder = std::filesystem::temp_directory_path() / ("frontalis_bake_test_" + std::to_string(::getpid()));
-  std::filesystem::create_directories(folder);
+  const TemporaryFolder folder;
   const Scene scene = read_scene(source + "/config/forehead.yaml");
-  write_model(bake(scene), (folder / "a.vtkhdf").string());
-  write_model(bake(scene), (folder / "b.vtkhdf").string());
-  EXPECT_TRUE(bytes(folder / "a.vtkhdf") == bytes(folder / "b.vtkhdf"));
-  std::filesystem::remove_all(folder);
+  write_model(bake(scene), folder / "a.vtkhdf");
+  write_model(bake(scene), folder / "b.vtkhdf");
+  EXPECT_TRUE(text_of(folder / "a.vtkhdf") == text_of(folder / "b.vtkhdf"));
 }
 
 TEST(GeneratedHead, BakesWithAllItsMuscles)

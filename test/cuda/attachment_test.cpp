@@ -14,7 +14,7 @@
 #include <random>
 #include <vector>
 
-#include "warp_on_host.hpp"
+#include "device_on_host.hpp"
 
 #include "cuda/kernels/attached_group.cuh"
 

@@ -8,15 +8,13 @@
 #include "solver/contact/body_motion.hpp"
 #include "solver/energy/energy_ledger_keeper.hpp"
 
+#include <random>
+
 #include "device_on_host.hpp"
 
-// The other lanes, which do not exist, add nothing to a sum.
-template <class T>
-static inline T __shfl_xor_sync(std::uint32_t, T, int)
-{
-  return T(0);
-}
-
+// all threads of a block share these arrays, and blocks run one after another
+#undef __shared__
+#define __shared__ static
 #include "cuda/kernels/contact_points.cuh"
 #include "cuda/kernels/pushed_bodies.cuh"
 
@@ -259,6 +257,58 @@ TEST(ContactPointsOfTheGpu, PushBodiesAsOnTheHost)
       contact.force = { { 0.02, 0, -0.3 } };
     }
     EXPECT_GT(compare(model, free ? "free" : "on a spring"), 0.1e-3);
+  }
+}
+
+// The threads of several warps in several blocks add the forces of points on three bodies, of which no point touches
+// the last; then a warp moves each body. Forces are multiples of 1/8 N, so that any order of addition gives the same
+// sum.
+TEST(ContactPointsOfTheGpu, AddTheForcesOfAllBlocks)
+{
+  constexpr std::uint32_t bodies = 3, threads = 96, blocks = 40;
+  std::vector<PushedBody> body;
+  for (std::uint32_t i = 0; i < bodies; ++i)
+    body.push_back({ { 1e-3 * (i + 1), 20, 0.1, { 0, 0, -0.5 } }, static_cast<std::int32_t>(2 * i + 1) });
+  std::vector<physics::PushedMotion<double>> motions(bodies, { { 0, 0, 1e-3 }, { 0, 0, 2e-3 }, { 0.1, 0, 0 }, dt, dt });
+  const std::vector<physics::Vec3<double>> held_at(bodies, { 0, 1e-3, 2e-3 });
+  std::vector<physics::Vec3<double>> reactions(bodies * blocks, { 1, 1, 1 }), sums(bodies, { 0, 0, 0 });
+  std::vector<float4> poses(3 * (2 * bodies + 1), float4{ 0, 0, 0, 0 });
+  const PushedBodies pushed{
+    body.data(), bodies, blocks, poses.data(), held_at.data(), motions.data(), reactions.data()
+  };
+  std::mt19937 random(3);
+  for (std::uint32_t block = 0; block < blocks; ++block)
+  {
+    std::vector<std::int32_t> of(threads);
+    std::vector<physics::Vec3<float>> force(threads);
+    for (std::uint32_t t = 0; t < threads; ++t)
+    {
+      const auto drawn = [&] { return static_cast<float>(random() % 64) / 8 - 4; };
+      force[t] = { drawn(), drawn(), drawn() };
+      // Threads without a point, points of bodies that are not pushed, and blocks with no point of the second body.
+      of[t] = static_cast<std::int32_t>(random() % 5) - 1;
+      if (of[t] == 3 && block % 3 == 0)
+        of[t] = 0;
+      for (std::uint32_t i = 0; i < bodies; ++i)
+        if (of[t] == body[i].body)
+          sums[i] = sums[i] - physics::Vec3<double>{ force[t].x, force[t].y, force[t].z };
+    }
+    BlockOnHost([&] { put_reactions<threads>(pushed, block, of[threadIdx.x], force[threadIdx.x]); }, threads);
+  }
+  EXPECT_GT(norm(sums[0]), 1);
+  EXPECT_GT(norm(sums[1]), 1);
+  for (std::uint32_t i = 0; i < bodies; ++i)
+  {
+    const auto expected = moved_on(body[i].law, motions[i], sums[i], held_at[i]);
+    BlockOnHost([&] { move_body(pushed, i, 0, 2 * dt, 2 * bodies + 1); });
+    for (const auto& [found, right] :
+         { std::pair(motions[i].centre, expected.centre), std::pair(motions[i].velocity, expected.velocity) })
+    {
+      EXPECT_EQ(found.x, right.x) << i;
+      EXPECT_EQ(found.y, right.y) << i;
+      EXPECT_EQ(found.z, right.z) << i;
+    }
+    EXPECT_EQ(motions[i].dt, 2 * dt);
   }
 }
 

@@ -7,12 +7,13 @@
 #include "solver/stepping/step_bound.hpp"
 
 #include "block_model.hpp"
+#include "nodal_vectors.hpp"
 
 #include <cmath>
 #include <random>
 #include <vector>
 
-#include "warp_on_host.hpp"
+#include "device_on_host.hpp"
 
 // strips call only some of the functions that their headers define
 #pragma GCC diagnostic ignored "-Wunused-function"
@@ -24,7 +25,7 @@ using namespace frontalis::cuda;
 namespace
 {
 
-using Vectors = std::vector<std::array<double, 3>>;
+using test::Vectors;
 
 // Three layers of voxels with a hole, most of them cut.
 Model cut_layers(HourglassControl hourglass)
@@ -106,12 +107,12 @@ struct Swept
     }
     std::uint32_t most = 0;
     for (const Strip& strip : strips.strips)
-      WarpOnHost(
-          [&](int lane)
+      BlockOnHost(
+          [&]
           {
             std::uint32_t bits = 0;
-            sweep_strip<2, With>(g, strip, g.slots + strip.slot_begin + lane, nullptr, nullptr, u.data(), next.data(),
-                                 Activations{ nullptr, 1 }, true, bits);
+            sweep_strip<2, With>(g, strip, g.slots + strip.slot_begin + threadIdx.x, nullptr, nullptr, u.data(),
+                                 next.data(), Activations{ nullptr, 1 }, true, bits);
             most = std::max(most, bits);
           });
     frequency_squared = double(__uint_as_float(most));
@@ -130,12 +131,8 @@ template <Effects With>
 void compare(HourglassControl hourglass)
 {
   const Model model = cut_layers(hourglass);
-  std::mt19937 random(3);
-  std::uniform_real_distribution<double> value(-1e-4, 1e-4);
-  Vectors u(model.nodes.size()), expected;
-  for (auto& moved : u)
-    for (double& x : moved)
-      x = value(random);
+  const Vectors u = test::random_vectors(model, 1e-4, 3);
+  Vectors expected;
   const auto reference = make_solver(std::make_shared<const Model>(model), { "reference", 1, 0 });
   reference->set_displacements(u);
   reference->internal_forces(expected);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "block_on_host.hpp"
+
 #include <cuda_runtime.h>
 
 #include <cmath>
@@ -11,17 +13,31 @@
 #define __noinline__
 #undef __shared__
 #define __shared__
-// Each block has one thread.
-struct ThreadOnHost
-{
-  std::uint32_t x;
-};
-static const ThreadOnHost threadIdx{ 0 }, blockDim{ 1 };
-static inline void __syncthreads() {}
+#define threadIdx BlockOnHost::thread()
+#define blockDim BlockOnHost::size()
+static inline void __syncthreads() { BlockOnHost::barrier(); }
+static inline int __syncthreads_or(int any) { return BlockOnHost::barrier(any != 0) ? 1 : 0; }
 static inline void __syncwarp(std::uint32_t) {}
-static inline int __syncthreads_or(int any) { return any; }
+static inline void __nanosleep(unsigned) { BlockOnHost::wait(); }
 static inline std::uint32_t __activemask() { return 1; }
 static inline int __any_sync(std::uint32_t, int any) { return any; }
+template <class T>
+static inline T __shfl_sync(std::uint32_t, T value, int from)
+{
+  return BlockOnHost::exchange(value, [from](std::uint32_t) { return static_cast<std::uint32_t>(from); });
+}
+// Like on a GPU, the last lane gets its own value.
+template <class T>
+static inline T __shfl_down_sync(std::uint32_t, T value, std::uint32_t by)
+{
+  return BlockOnHost::exchange(value, [by](std::uint32_t lane) { return std::min(lane + by, BlockOnHost::lanes - 1); });
+}
+template <class T>
+static inline T __shfl_xor_sync(std::uint32_t, T value, int mask)
+{
+  return BlockOnHost::exchange(value, [mask](std::uint32_t lane) { return lane ^ static_cast<std::uint32_t>(mask); });
+}
+using std::max;
 template <class T>
 static inline T __ldg(const T* at)
 {

@@ -1,4 +1,4 @@
-// The GPU's kernel for patches with groups and cut voxels, run on the host by one warp. The test needs a CUDA toolkit
+// The GPU's kernel for patches with groups and cut voxels, run on the host by one block. The test needs a CUDA toolkit
 // but no GPU.
 #include <gtest/gtest.h>
 
@@ -10,18 +10,15 @@
 #include "frontalis/solver/solver.hpp"
 #include "solver/stepping/step_bound.hpp"
 
-#include "block_model.hpp"
+#include "parted_block.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <vector>
 
-#include "warp_on_host.hpp"
+#include "device_on_host.hpp"
 
-// The block is a warp.
-#define blockDim (ThreadOnHost{ WarpOnHost::lanes })
-#define __syncthreads WarpOnHost::barrier
 #undef __launch_bounds__
 #define __launch_bounds__(...)
 static const dim3 blockIdx(0), gridDim(1);
@@ -59,21 +56,8 @@ Model whole_model()
   s.voxels = { { 6, 4, 5 } };
   s.poisson = 0.45;
   Model model = test::block_model(s);
-  const std::int32_t first = 6, shift = 3;
-  model.flaps = { { first, shift } };
-  for (auto& voxel : model.voxels)
-    if (voxel[2] >= 3 && voxel[0] >= 3)
-      voxel[2] += shift;
-  std::sort(model.voxels.begin(), model.voxels.end(),
-            [](const auto& a, const auto& b)
-            { return std::lexicographical_compare(a.rbegin(), a.rend(), b.rbegin(), b.rend()); });
-  model.size[2] = 8;
-  build_nodes(model);
-  const auto index_of = [&](const std::array<std::int32_t, 3>& place)
-  {
-    const auto found = std::find(model.nodes.begin(), model.nodes.end(), place);
-    return found == model.nodes.end() ? -1 : static_cast<std::int32_t>(found - model.nodes.begin());
-  };
+  test::part(model, 3, [](int i) { return i >= 3; });
+  test::join(model, [](int i) { return i == 3 || i == 6; });
   const auto level = [](const std::array<double, 3>& p) { return 0.96 * p[2] + 0.28 * p[0] - 0.4 * edge; };
   std::vector<std::array<double, 3>> rest;
   for (std::size_t n = 0; n < model.nodes.size(); ++n)
@@ -85,12 +69,9 @@ Model whole_model()
   {
     const auto& at = model.nodes[n];
     const auto node = static_cast<std::int32_t>(n);
-    const auto place = rest_place(model, at);
-    if (place != at && (at[0] == 3 || at[0] == 6) && index_of(place) >= 0)
-      model.joints.push_back({ node, index_of(place) });
     if (at[2] > 0)
       continue;
-    const std::int32_t master = index_of({ { at[0] / 2 * 2, at[1], 1 } });
+    const std::int32_t master = test::node_at(model, { { at[0] / 2 * 2, at[1], 1 } });
     const bool slides = at[0] > 2;
     model.attached.push_back({ node, master,
                                slides ? std::clamp(level(rest[n]) / level(rest[master]), -1.0, 1.0) : -0.6, -1,
@@ -197,7 +178,7 @@ void compare(int turns)
   launch.most_voxels = patches.most_voxels;
   launch.most_halo = patches.most_halo;
   launch.most_nodes = patches.most_nodes;
-  WarpOnHost([&](int) { patch_kernel<int(kernel_effects)>(g, launch); });
+  BlockOnHost([&] { patch_kernel<int(kernel_effects)>(g, launch); });
 
   const auto reference = make_solver(std::make_shared<const Model>(model), { "reference", 1, dt });
   reference->advance(steps * dt, reference->controls());
@@ -223,7 +204,11 @@ void compare(int turns)
 
 }  // namespace
 
-TEST(PatchesOfTheGpu, MoveGroupsAndCutVoxelsAsTheReference) { compare(1); }
+TEST(PatchesOfTheGpu, MoveGroupsAndCutVoxelsAsTheReference)
+{
+  for (const int turns : { 1, 2, 3 })
+    compare(turns);
+}
 
 #else
 

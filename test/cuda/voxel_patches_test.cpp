@@ -1,6 +1,7 @@
 #include "cuda/partition/voxel_patches.hpp"
 #include "cuda/bench/shell_model.hpp"
 #include "frontalis/model/effects.hpp"
+#include "parted_block.hpp"
 #include "solver/effect_scene.hpp"
 
 #include <gtest/gtest.h>
@@ -99,35 +100,14 @@ TEST(VoxelPatches, KeepGroupsTogether)
   test::BlockSettings s;
   s.voxels = { { 12, 9, 6 } };
   Model model = test::block_model(s);
-  const std::int32_t first = 7, shift = 4;
-  model.flaps = { { first, shift } };
-  for (auto& voxel : model.voxels)
-    if (voxel[2] >= 3 && voxel[0] < 8)
-      voxel[2] += shift;
-  std::sort(model.voxels.begin(), model.voxels.end(),
-            [](const auto& a, const auto& b)
-            { return std::lexicographical_compare(a.rbegin(), a.rend(), b.rbegin(), b.rend()); });
-  model.size[2] += shift;
-  build_nodes(model);
-  const auto add = [&](std::size_t n, const std::array<std::int32_t, 3>& master, bool joined)
-  {
-    const auto node = static_cast<std::int32_t>(n);
-    const auto at = std::find(model.nodes.begin(), model.nodes.end(), master);
-    if (at == model.nodes.end())
-      return;
-    const auto of = static_cast<std::int32_t>(at - model.nodes.begin());
-    if (joined)
-      model.joints.push_back({ node, of });
-    else
-      model.attached.push_back({ node, of, 0.5, -1, -1, -1 });
-  };
+  test::part(model, 3, [](int i) { return i < 8; });
+  test::join(model);
   for (std::size_t n = 0; n < model.nodes.size(); ++n)
   {
     const auto& at = model.nodes[n];
-    if (at[2] >= first)
-      add(n, rest_place(model, at), true);
-    else if (at[2] == 0)
-      add(n, { { at[0] / 2 * 2, at[1], 1 } }, false);
+    const std::int32_t master = test::node_at(model, { { at[0] / 2 * 2, at[1], 1 } });
+    if (at[2] == 0 && master >= 0)
+      model.attached.push_back({ static_cast<std::int32_t>(n), master, 0.5, -1, -1, -1 });
   }
   EXPECT_GT(model.joints.size(), 20u);
   for (const int blocks : { 1, 7, 30 })

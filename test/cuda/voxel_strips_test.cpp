@@ -1,6 +1,6 @@
 #include "cuda/partition/voxel_strips.hpp"
-#include "block_model.hpp"
 #include "frontalis/error.hpp"
+#include "parted_block.hpp"
 
 #include <gtest/gtest.h>
 
@@ -134,16 +134,7 @@ TEST(VoxelStrips, KeepTheSidesOfAGapApart)
   s.voxels = { { 7, 6, 5 } };
   Model model = test::block_model(s);
   const std::size_t whole = model.nodes.size();
-  const std::int32_t first = model.size[2] + 1, shift = first - 2;
-  model.flaps = { { first, shift } };
-  for (auto& voxel : model.voxels)
-    if (voxel[2] >= 2 && voxel[0] < 4)
-      voxel[2] += shift;
-  std::sort(model.voxels.begin(), model.voxels.end(),
-            [](const auto& a, const auto& b)
-            { return std::lexicographical_compare(a.rbegin(), a.rend(), b.rbegin(), b.rend()); });
-  model.size[2] += first;
-  build_nodes(model);
+  test::part(model, 2, [](int i) { return i < 4; });
   EXPECT_EQ(rest_place(model, model.nodes.back()), (std::array<std::int32_t, 3>{ { 4, 6, 5 } }));
   EXPECT_GT(model.nodes.size(), whole);
   for (const int rows : { 2, 3 })

@@ -1,14 +1,12 @@
+#include "files.hpp"
 #include "frontalis/error.hpp"
 #include "frontalis/model/model_file.hpp"
 #include "model/model_block.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <string>
 
 namespace
@@ -20,20 +18,7 @@ namespace fs = std::filesystem;
 class ModelFile : public testing::Test
 {
 protected:
-  void SetUp() override
-  {
-    folder_ = fs::temp_directory_path() / ("frontalis_model_file_test_" + std::to_string(::getpid()));
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-
-  static std::string bytes(const std::string& file)
-  {
-    std::ifstream in(file, std::ios::binary);
-    return { std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>() };
-  }
+  std::string path(const std::string& name) const { return folder_ / name; }
 
   static std::string fault_of(const std::string& file)
   {
@@ -48,7 +33,7 @@ protected:
     return "";
   }
 
-  fs::path folder_;
+  TemporaryFolder folder_;
 };
 
 TEST_F(ModelFile, GivesBackEveryField)
@@ -160,18 +145,18 @@ TEST_F(ModelFile, EqualModelsGiveEqualBytes)
   write_model(full_block(3, 4, 5), path("a.vtkhdf"));
   ::sleep(2);  // longer than the resolution of HDF5's time stamps
   write_model(full_block(3, 4, 5), path("b.vtkhdf"));
-  EXPECT_TRUE(bytes(path("a.vtkhdf")) == bytes(path("b.vtkhdf")));
+  EXPECT_TRUE(text_of(path("a.vtkhdf")) == text_of(path("b.vtkhdf")));
   Model other = full_block(3, 4, 5);
   other.scene_hash = "fedcba9876543210";
   write_model(other, path("c.vtkhdf"));
-  EXPECT_FALSE(bytes(path("a.vtkhdf")) == bytes(path("c.vtkhdf")));
+  EXPECT_FALSE(text_of(path("a.vtkhdf")) == text_of(path("c.vtkhdf")));
 }
 
 TEST_F(ModelFile, MissingFolderAndForeignFilesAreNamed)
 {
   EXPECT_NE(fault_of(path("none.vtkhdf")).find("no such file"), std::string::npos);
   EXPECT_NE(fault_of(path("none.vtkhdf")).find(path("none.vtkhdf")), std::string::npos);
-  EXPECT_NE(fault_of(folder_.string()).find("folder"), std::string::npos);
+  EXPECT_NE(fault_of(folder_.path()).find("folder"), std::string::npos);
   std::ofstream(path("text.vtkhdf")) << "voxels: none\n";
   EXPECT_NE(fault_of(path("text.vtkhdf")).find("not an HDF5 file"), std::string::npos);
 }
@@ -193,7 +178,7 @@ TEST_F(ModelFile, TruncatedFilesAreRefusedAtEveryLength)
 TEST_F(ModelFile, AnotherVersionIsRefusedWithBothNumbers)
 {
   write_model(full_block(2, 2, 2), path("a.vtkhdf"));
-  std::string content = bytes(path("a.vtkhdf"));
+  std::string content = text_of(path("a.vtkhdf"));
   // Bytes of the attribute: name padded to 24 bytes, type (16), shape of a scalar (8), value.
   const std::size_t name = content.find("model_file_version");
   ASSERT_NE(name, std::string::npos);
@@ -228,7 +213,7 @@ TEST_F(ModelFile, AnotherSceneOrPackageIsRefusedWhereOneIsAskedFor)
   EXPECT_NE(other.find("is of another scene"), std::string::npos) << other;
   EXPECT_NE(other.find("fedcba9876543210"), std::string::npos) << other;
   // The file contains the version of the package as text. Its first digit is changed.
-  std::string content = bytes(path("a.vtkhdf"));
+  std::string content = text_of(path("a.vtkhdf"));
   const Model again = read_model(path("a.vtkhdf"));
   EXPECT_EQ(again.scene_hash, model.scene_hash);
   const std::size_t version = content.find(FRONTALIS_VERSION);
@@ -245,12 +230,12 @@ TEST_F(ModelFile, NothingIsLeftWhenWritingFails)
   bad.fill.pop_back();
   EXPECT_THROW(write_model(bad, path("bad.vtkhdf")), Error);
   EXPECT_THROW(write_model(full_block(2, 2, 2), path("no_folder/a.vtkhdf")), Error);
-  EXPECT_TRUE(fs::is_empty(folder_));
+  EXPECT_TRUE(fs::is_empty(folder_.path()));
   // An existing file stays intact if writing its successor fails.
   write_model(full_block(2, 2, 2), path("a.vtkhdf"));
-  const std::string before = bytes(path("a.vtkhdf"));
+  const std::string before = text_of(path("a.vtkhdf"));
   EXPECT_THROW(write_model(bad, path("a.vtkhdf")), Error);
-  EXPECT_TRUE(before == bytes(path("a.vtkhdf")));
+  EXPECT_TRUE(before == text_of(path("a.vtkhdf")));
 }
 
 TEST_F(ModelFile, AMillionVoxelsAreReadBack)

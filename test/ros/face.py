@@ -83,9 +83,20 @@ class Face:
         answer = self.list_muscles()
         return dict(zip(answer.name, answer.target))
 
+    def place(self, landmark):
+        """Position of a landmark in the face frame [m]."""
+        position = self.landmarks.poses[self.state.landmark.index(landmark)].position
+        return position.x, position.y, position.z
+
     def height(self, landmark):
         """Height of a landmark above the face frame's origin [m]."""
-        return self.landmarks.poses[self.state.landmark.index(landmark)].position.z
+        return self.place(landmark)[2]
+
+    def advance(self, seconds):
+        """Steps, and waits for the frame at the end of the step."""
+        answer = self.step(seconds)
+        assert answer.success, answer.message
+        self.wait_for_frame(lambda: abs(self.state.time - answer.time) < 1e-9, "the state")
 
 
 def wait(condition, what):

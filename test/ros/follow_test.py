@@ -31,21 +31,12 @@ class Follow(unittest.TestCase):
         self.fixed = tf2_ros.StaticTransformBroadcaster()
         wait(self.frames.pub_tf.get_num_connections, "a listener")
 
-    def tip(self):
-        at = self.face.landmarks.poses[self.face.state.landmark.index("tip")].position
-        return (at.x, at.y, at.z)
-
-    def step(self, seconds):
-        answer = self.face.step(seconds)
-        self.assertTrue(answer.success, answer.message)
-        self.face.wait_for_frame(lambda: abs(self.face.state.time - answer.time) < 1e-9, "the state")
-
     def wait_for_word(self, word, **shown):
         """Steps and sends the frame until the diagnostics contain the word."""
 
         def told():
             self.show(**shown)
-            self.step(0.01)
+            self.face.advance(0.01)
             return any(word in status.message for status in self.face.diagnostics)
 
         wait(told, "the word '%s'" % word)
@@ -57,16 +48,16 @@ class Follow(unittest.TestCase):
     def step_until_tip_at(self, place, shift, **shown):
         def arrived():
             self.show(shift, **shown)
-            self.step(0.2)
-            return max(abs(now - wanted) for now, wanted in zip(self.tip(), place)) < 2e-4
+            self.face.advance(0.2)
+            return max(abs(now - wanted) for now, wanted in zip(self.face.place("tip"), place)) < 2e-4
 
         wait(arrived, "the tip at its place")
 
     def test_follows_and_tells_of_faults(self):
-        rest = self.tip()
+        rest = self.face.place("tip")
         # without a frame the bone stays where it is, and the diagnostics name the reason
         self.wait_for_word("jaw")
-        self.assertAlmostEqual(self.tip()[2], rest[2], 5)
+        self.assertAlmostEqual(self.face.place("tip")[2], rest[2], 5)
         self.assertEqual(self.face.diagnostics[0].level, 1)
         # the frame is first at its place of rest, then 3 mm above it
         self.fixed.sendTransform(link("face", "jaw_rest", REST))
@@ -80,7 +71,7 @@ class Follow(unittest.TestCase):
         wait(lambda: "follows" in (self.face.diagnostic("latest refusal on ~bone_pose") or ""), "a refusal")
         # a frame that jumps by 40 mm is followed at 0.1 m/s
         self.wait_for_word("jumped", shift=(0.04, 0, 0))
-        self.assertLess(self.tip()[0], rest[0] + 0.03)
+        self.assertLess(self.face.place("tip")[0], rest[0] + 0.03)
         self.step_until_tip_at((rest[0] + 0.04, rest[1], rest[2]), (0.04, 0, 0))
         self.assertFalse(self.face.state.failed)
         # the bone turns about the origin of the frame
@@ -92,7 +83,7 @@ class Follow(unittest.TestCase):
         self.step_until_tip_at(place, (0, 0, 0), turn=turned)
         # a transform with a stamp that is too old or in the future is not used
         self.wait_for_word("in the future", shift=(0, 0, 0), age=-2000)
-        self.assertLess(max(abs(a - b) for a, b in zip(self.tip(), place)), 2e-4)
+        self.assertLess(max(abs(a - b) for a, b in zip(self.face.place("tip"), place)), 2e-4)
 
 
 if __name__ == "__main__":

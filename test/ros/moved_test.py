@@ -27,17 +27,8 @@ class Moved(unittest.TestCase):
         wait(self.poses.get_num_connections, "the connection for poses")
         self.assertTrue(self.face.reset().success)
         self.face.wait_for_frame(lambda: self.face.state.time == 0, "the reset")
-        self.assertAlmostEqual(self.tip()[2], -0.01, 6)
-        self.rest = self.tip()
-
-    def tip(self):
-        at = self.face.landmarks.poses[self.face.state.landmark.index("tip")].position
-        return (at.x, at.y, at.z)
-
-    def step(self, seconds):
-        answer = self.face.step(seconds)
-        self.assertTrue(answer.success, answer.message)
-        self.face.wait_for_frame(lambda: abs(self.face.state.time - answer.time) < 1e-9, "the state")
+        self.assertAlmostEqual(self.face.place("tip")[2], -0.01, 6)
+        self.rest = self.face.place("tip")
 
     def send(self, *messages):
         for message in messages:
@@ -48,8 +39,8 @@ class Moved(unittest.TestCase):
         """Steps until the tip rests at a place [m]. It takes more than one step if a pose arrives late."""
 
         def arrived():
-            self.step(0.5)
-            return max(abs(now - wanted) for now, wanted in zip(self.tip(), place)) < within
+            self.face.advance(0.5)
+            return max(abs(now - wanted) for now, wanted in zip(self.face.place("tip"), place)) < within
 
         wait(arrived, "the tip at its place")
 
@@ -60,7 +51,7 @@ class Moved(unittest.TestCase):
     def test_bone_that_jumps_is_no_danger(self):
         for shift in (0.005, -0.005, 0.005, 0):
             self.send(pose((shift, 0, 0)))
-            self.step(0.05)
+            self.face.advance(0.05)
         self.step_until_tip_at(self.rest, 5e-4)
         self.assertFalse(self.face.state.failed)
 
@@ -75,9 +66,9 @@ class Moved(unittest.TestCase):
             pose((math.nan, 0, 0)), pose((0, math.inf, 0)), pose((0, 0, -math.inf)), pose(turn=(math.nan, 0, 0, 1)),
             pose(turn=(math.inf, 0, 0, 1)), pose(turn=(0, 0, 0, 0)), pose(turn=(0, 0, 0.5, 1)),
             pose((0.01, 0, 0), bone="mandible"), pose((0.01, 0, 0), bone=""))
-        self.step(0.3)
+        self.face.advance(0.3)
         self.assertFalse(self.face.state.failed)
-        for now, before in zip(self.tip(), self.rest):
+        for now, before in zip(self.face.place("tip"), self.rest):
             self.assertAlmostEqual(now, before, 6)
         # after bad messages, good ones are still accepted
         self.send(pose((0, 0, 0.003)))

@@ -31,7 +31,7 @@ class Robot(unittest.TestCase):
         cls.pose = rospy.Publisher("/robot_controller/pose", String, queue_size=10)
         cls.face.wait_until_ready()
         wait(lambda: cls.command.get_num_connections() and cls.pose.get_num_connections(), "the controller")
-        cls.rest = {name: cls.place(name) for name in cls.face.state.landmark}
+        cls.rest = {name: cls.face.place(name) for name in cls.face.state.landmark}
 
     @classmethod
     def take_joints(cls, message):
@@ -41,14 +41,9 @@ class Robot(unittest.TestCase):
     def take_wrench(cls, message, bone):
         cls.wrenches[bone] = message
 
-    @classmethod
-    def place(cls, landmark):
-        position = cls.face.landmarks.poses[cls.face.state.landmark.index(landmark)].position
-        return position.x, position.y, position.z
-
     def moved(self, landmark, axis):
         """How far a landmark has moved from rest [m] along an axis: 0 forward, 1 left, 2 up."""
-        return self.place(landmark)[axis] - self.rest[landmark][axis]
+        return self.face.place(landmark)[axis] - self.rest[landmark][axis]
 
     def send(self, joint, position, seconds=0.1):
         point = JointTrajectoryPoint(positions=[position], time_from_start=rospy.Duration(seconds))
@@ -56,9 +51,7 @@ class Robot(unittest.TestCase):
 
     def step_until(self, condition, what):
         def holds():
-            answer = self.face.step(0.1)
-            self.assertTrue(answer.success, answer.message)
-            self.face.wait_for_frame(lambda: abs(self.face.state.time - answer.time) < 1e-9, "the state")
+            self.face.advance(0.1)
             return condition()
 
         wait(holds, what)

@@ -22,9 +22,7 @@ inline std::shared_ptr<const Model> bar()
   Muscle muscle;
   muscle.name = "puller";
   add_muscle(model, { { 1, 0, 0 } }, muscle);
-  for (std::size_t n = 0; n < model.nodes.size(); ++n)
-    if (model.nodes[n][0] == 0)
-      model.rigid.push_back({ static_cast<std::int32_t>(n), 0 });
+  hold_plane(model, 0, 0);
   model.bones = { "jaw" };
   model.skin.vertices = { { { 6e-3, 0, 0 } }, { { 6e-3, 2e-3, 0 } }, { { 6e-3, 2e-3, 2e-3 } } };
   model.skin.triangles = { { { 0, 1, 2 } } };

@@ -28,9 +28,7 @@ Model slab_with_film()
   Muscle muscle;
   muscle.name = "puller";
   test::add_muscle(model, { { 1, 0, 0 } }, muscle);
-  for (std::size_t n = 0; n < model.nodes.size(); ++n)
-    if (model.nodes[n][0] == 0)
-      model.rigid.push_back({ static_cast<std::int32_t>(n), 0 });
+  test::hold_plane(model, 0, 0);
   model.bones = { "jaw" };
   const Model sheet = test::film_model(100);
   model.film = sheet.film;

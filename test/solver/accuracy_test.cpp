@@ -21,9 +21,7 @@ Model cantilever(std::int32_t thick, double poisson)
   settings.spacing = { { edge, edge, edge } };
   settings.poisson = poisson;
   Model model = test::block_model(settings);
-  for (std::size_t n = 0; n < model.nodes.size(); ++n)
-    if (model.nodes[n][0] == 0)
-      model.rigid.push_back({ static_cast<std::int32_t>(n), -1 });
+  test::hold_plane(model, 0);
   model.gravity = { { 0, 0, -0.05 } };
   return model;
 }

@@ -2,6 +2,7 @@
 
 #include "backends.hpp"
 #include "contact_model.hpp"
+#include "nodal_vectors.hpp"
 
 #include "frontalis/solver/rigid_motion.hpp"
 
@@ -13,8 +14,6 @@ namespace frontalis
 namespace test
 {
 
-using Vectors = std::vector<std::array<double, 3>>;
-
 constexpr double degree = 3.14159265358979 / 180;
 
 class BodiesTouch : public EveryBackend
@@ -25,13 +24,6 @@ protected:
     return make_solver(std::make_shared<const Model>(model), { GetParam(), threads, time_step, ledger });
   }
 };
-
-inline Vectors displacements(const Solver& solver)
-{
-  Vectors u;
-  solver.displacements(u);
-  return u;
-}
 
 inline double mean(const Vectors& vectors, std::size_t axis)
 {
@@ -53,9 +45,7 @@ inline Model block_and_finger(double friction, bool sampled = false)
   settings.voxels = { { 10, 8, 4 } };
   settings.damping = 100;
   Model model = block_model(settings);
-  for (std::size_t n = 0; n < model.nodes.size(); ++n)
-    if (model.nodes[n][2] == 0)
-      model.rigid.push_back({ static_cast<std::int32_t>(n) });
+  hold_plane(model, 2);
   model.bones = { "other", "finger" };
   const double radius = 4e-3;
   const std::array<double, 3> centre{ { 4e-3, 4e-3, 8.2e-3 } };

@@ -24,9 +24,7 @@ Model held_block()
 {
   Model model = test::block_model();
   model.bones = { "bone" };
-  for (std::size_t n = 0; n < model.nodes.size(); ++n)
-    if (model.nodes[n][2] == model.size[2])
-      model.rigid.push_back({ static_cast<std::int32_t>(n), 0 });
+  test::hold_plane(model, 2, 0, model.size[2]);
   return model;
 }
 

@@ -43,26 +43,6 @@ Model cut_block(HourglassControl hourglass = HourglassControl::scalar, const tes
   return model;
 }
 
-Vectors random_vectors(const Model& model, double amplitude)
-{
-  std::mt19937 random(11);
-  std::uniform_real_distribution<double> value(-amplitude, amplitude);
-  Vectors u(model.nodes.size());
-  for (auto& vector : u)
-    for (double& component : vector)
-      component = value(random);
-  return u;
-}
-
-double largest(const Vectors& a)
-{
-  double x = 0;
-  for (const auto& vector : a)
-    for (const double component : vector)
-      x = std::max(x, std::abs(component));
-  return x;
-}
-
 class CutVoxels : public test::EveryBackend
 {
 protected:
@@ -78,7 +58,7 @@ protected:
       solver_->advance(2e-3, controls);
       solver_->displacements(found.emplace_back());
     }
-    const double size = largest(found[1]);
+    const double size = test::largest(found[1]);
     EXPECT_GT(size, 1e-6) << what;
     for (std::size_t n = 0; n < found[0].size(); ++n)
       for (int axis = 0; axis < 3; ++axis)
@@ -91,7 +71,7 @@ double true_over_bound(const Model& model, double amplitude)
 {
   std::vector<std::size_t> free(24);
   std::iota(free.begin(), free.end(), 0);
-  return test::true_over_bound(model, random_vectors(model, amplitude), std::vector<double>(8, 1e-6 / 8), free);
+  return test::true_over_bound(model, test::random_vectors(model, amplitude), std::vector<double>(8, 1e-6 / 8), free);
 }
 
 }  // namespace
@@ -103,27 +83,7 @@ TEST_P(CutVoxels, ForcesAreTheGradientOfTheEnergy)
   for (const auto hourglass : { HourglassControl::scalar, HourglassControl::assumed_strain })
   {
     const Model model = cut_block(hourglass);
-    const auto energies = make_solver(std::make_shared<const Model>(model), { "reference", 0, 0 });
-    const auto solver_ = solver(model);
-    const Vectors u = random_vectors(model, 1.5e-4);
-    solver_->set_displacements(u);
-    Vectors f;
-    solver_->internal_forces(f);
-    const double step = 1e-8;
-    for (std::size_t n = 0; n < u.size(); n += 3)
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        double energy[2];
-        for (int side = 0; side < 2; ++side)
-        {
-          Vectors moved = u;
-          moved[n][axis] += side == 0 ? -step : step;
-          energies->set_displacements(moved);
-          const Monitor m = energies->monitor();
-          energy[side] = m.internal + m.hourglass;
-        }
-        EXPECT_NEAR(f[n][axis], (energy[1] - energy[0]) / (2 * step), largest(f) * 2e-5) << n << " " << axis;
-      }
+    test::expect_forces_from_energy(model, *solver(model), test::random_vectors(model, 1.5e-4), 3);
   }
 }
 
@@ -205,7 +165,7 @@ TEST_P(CutVoxels, TheBoundOfTheTimeStepHolds)
     Model model = cut_block(HourglassControl::scalar, settings);
     model.time_step_share = 0.99;
     const auto solver_ = solver(model);
-    solver_->set_velocities(random_vectors(model, 1e-3));
+    solver_->set_velocities(test::random_vectors(model, 1e-3));
     solver_->advance(0.002, solver_->controls());
     const auto energy = [&]
     {

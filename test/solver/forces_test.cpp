@@ -1,11 +1,11 @@
 #include "backends.hpp"
 #include "block_model.hpp"
+#include "nodal_vectors.hpp"
 
 #include <cmath>
-#include <random>
 
 using namespace frontalis;
-using Vectors = std::vector<std::array<double, 3>>;
+using test::Vectors;
 
 namespace
 {
@@ -34,26 +34,6 @@ test::BlockSettings ragged()
   return s;
 }
 
-double largest(const Vectors& a)
-{
-  double x = 0;
-  for (const auto& v : a)
-    for (const double c : v)
-      x = std::max(x, std::abs(c));
-  return x;
-}
-
-Vectors random_displacements(const Model& model, double amplitude)
-{
-  std::mt19937 random(11);
-  std::uniform_real_distribution<double> value(-amplitude, amplitude);
-  Vectors u(model.nodes.size());
-  for (auto& v : u)
-    for (auto& c : v)
-      c = value(random);
-  return u;
-}
-
 }  // namespace
 
 class Forces : public test::EveryBackend
@@ -75,7 +55,7 @@ TEST_P(Forces, RigidMotionGivesNone)
   solver_->set_displacements(affine(model, { { { { 1.01, 0, 0 } }, { { 0, 1, 0 } }, { { 0, 0, 1 } } } }));
   Vectors scale;
   solver_->internal_forces(scale);
-  EXPECT_LT(largest(f), largest(scale) * (single_precision() ? 1e-2 : 1e-9));
+  EXPECT_LT(test::largest(f), test::largest(scale) * (single_precision() ? 1e-2 : 1e-9));
 }
 
 TEST_P(Forces, AffinePatchHasNoForceInside)
@@ -95,7 +75,7 @@ TEST_P(Forces, AffinePatchHasNoForceInside)
       for (const double c : f[n])
         inside = std::max(inside, std::abs(c));
   }
-  EXPECT_LT(inside, largest(f) * (single_precision() ? 2e-5 : 1e-12));
+  EXPECT_LT(inside, test::largest(f) * (single_precision() ? 2e-5 : 1e-12));
 }
 
 class EnergyGradient : public testing::TestWithParam<std::tuple<Backend, HourglassControl>>
@@ -109,28 +89,8 @@ TEST_P(EnergyGradient, IsTheForce)
   s.keep = [](int i, int j, int k) { return !(i == 1 && j == 1 && k == 1); };
   Model model = test::block_model(s);
   model.hourglass = std::get<1>(GetParam());
-  // Energies are those of the reference in double precision, forces those of the backend under test.
-  const auto energies = make_solver(std::make_shared<const Model>(model), { "reference", 0, 0 });
   const auto solver_ = make_solver(std::make_shared<const Model>(model), { std::get<0>(GetParam()), 0, 0 });
-  const Vectors u = random_displacements(model, 2e-4);
-  solver_->set_displacements(u);
-  Vectors f;
-  solver_->internal_forces(f);
-  const double step = 1e-8;
-  for (std::size_t n = 0; n < u.size(); ++n)
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      double energy[2];
-      for (int side = 0; side < 2; ++side)
-      {
-        Vectors moved = u;
-        moved[n][axis] += side == 0 ? -step : step;
-        energies->set_displacements(moved);
-        const Monitor m = energies->monitor();
-        energy[side] = m.internal + m.hourglass;
-      }
-      EXPECT_NEAR(f[n][axis], (energy[1] - energy[0]) / (2 * step), largest(f) * 2e-5) << n << " " << axis;
-    }
+  test::expect_forces_from_energy(model, *solver_, test::random_vectors(model, 2e-4));
 }
 
 INSTANTIATE_TEST_SUITE_P(Backends, EnergyGradient,
@@ -144,7 +104,7 @@ TEST_P(Forces, AgreeWithTheReferenceAtLargeDeformationWithFibres)
   muscle.name = "m";
   muscle.passive = true;
   test::add_muscle(model, { { 0.6f, 0.0f, 0.8f } }, muscle);
-  const Vectors u = random_displacements(model, 3e-4);
+  const Vectors u = test::random_vectors(model, 3e-4);
   const auto reference = make_solver(std::make_shared<const Model>(model), { "reference", 0, 0 });
   const auto solver_ = solver(model);
   Vectors expected, found;
@@ -160,7 +120,7 @@ TEST_P(Forces, AgreeWithTheReferenceAtLargeDeformationWithFibres)
   for (std::size_t n = 0; n < expected.size(); ++n)
     for (int axis = 0; axis < 3; ++axis)
       difference = std::max(difference, std::abs(expected[n][axis] - found[n][axis]));
-  EXPECT_LT(difference, largest(expected) * 2e-6);
+  EXPECT_LT(difference, test::largest(expected) * 2e-6);
 }
 
 FRONTALIS_EVERY_BACKEND(Forces);

@@ -82,12 +82,8 @@ Model block_on_plane(double degrees, double friction)
   s.voxels = { { 6, 4, 2 } };
   s.damping = 50;
   Model model = test::block_model(s);
-  std::vector<std::int32_t> underside;
-  for (std::size_t n = 0; n < model.nodes.size(); ++n)
-    if (model.nodes[n][2] == 0)
-      underside.push_back(static_cast<std::int32_t>(n));
   slide_on(
-      model, "plane", [](const auto& p) { return p[2] + 1e-4; }, underside, 10e-3, 0.5);
+      model, "plane", [](const auto& p) { return p[2] + 1e-4; }, test::plane_of_nodes(model, 2), 10e-3, 0.5);
   model.constraint_surfaces[0].friction = friction;
   const double angle = degrees * 3.14159265358979 / 180;
   model.gravity = { { gravity * std::sin(angle), 0, -gravity * std::cos(angle) } };
@@ -328,21 +324,23 @@ TEST_P(SpinningShell, GoesOnInAnotherSolverThatHasTheSameFriction)
   EXPECT_THROW(other->unpack(spinning(model_of(true, 0), GetParam())->pack()), Error);
 }
 
-// Nodes that leave the samples of a field keep their plane and are counted. If they go far away, the motion stops.
-TEST_P(Gliding, NodesPastTheRimAreCountedAndStopTheMotion)
+// Nodes that leave the samples of a field keep their plane and are counted. If they go far away, the motion stops with
+// a report, which tells whether the surface ends there or was not sampled so far from where nodes rest.
+TEST_P(Gliding, NodesOutsideTheFieldAreCountedAndStopTheMotion)
 {
-  for (const bool follows_a_bone : { false, true })
+  for (const auto& [follows_a_bone, ends] : { std::pair(false, true), { true, true }, { true, false } })
   {
     Model model = block_on_plane(90, 0);
     model.damping = 0;
     model.bones = { "bone" };
     model.constraint_surfaces[0].bone = follows_a_bone ? 0 : -1;
-    // The plane ends 3 mm in front of the block.
-    const auto plane = [](const auto& p) { return SurfaceDistance(p[2] + 1e-4, std::max(0.0, p[0] - 9e-3)); };
+    // The plane ends 3 mm in front of the block, or is sampled up to 20 mm from it.
+    const auto plane = [ends = ends](const auto& p)
+    { return SurfaceDistance(p[2] + 1e-4, ends ? std::max(0.0, p[0] - 9e-3) : 0.0); };
     std::vector<std::array<double, 3>> rest;
     for (const auto& node : model.sliding)
       rest.push_back(test::rest(model, node.node));
-    model.constraint_surfaces[0].field = sample_field(rest, plane, 0.25e-3, 50e-3);
+    model.constraint_surfaces[0].field = sample_field(rest, plane, 0.25e-3, usual_travel);
     const auto shared = std::make_shared<const Model>(model);
     const auto solver_ = make_solver(shared, { GetParam(), 0, 0 });
     Guard guard(*solver_, shared);
@@ -350,7 +348,7 @@ TEST_P(Gliding, NodesPastTheRimAreCountedAndStopTheMotion)
     std::int64_t counted = 0;
     std::string report;
     Vectors u;
-    for (int i = 0; i < 60 && report.empty(); ++i)
+    for (int i = 0; i < 90 && report.empty(); ++i)
     {
       try
       {
@@ -368,9 +366,14 @@ TEST_P(Gliding, NodesPastTheRimAreCountedAndStopTheMotion)
         EXPECT_NEAR(u[node.node][2], 0, 1e-6);
     }
     EXPECT_GE(counted, 5);
-    EXPECT_NE(report.find("sliding on surface plane: continue the surface"), std::string::npos) << report;
-    EXPECT_GT(mean_x(u), 3e-3);
-    EXPECT_LT(mean_x(u), 8e-3);
+    EXPECT_NE(report.find(ends ? "sliding past the rim of surface plane: continue the surface"
+                               : "sliding on surface plane, 2"),
+              std::string::npos)
+        << report;
+    EXPECT_EQ(report.find("rim") != std::string::npos, ends) << report;
+    EXPECT_EQ(report.find("known up to 20 mm): hold the tissue") != std::string::npos, !ends) << report;
+    EXPECT_GT(mean_x(u), ends ? 3e-3 : 20e-3);
+    EXPECT_LT(mean_x(u), ends ? 8e-3 : 27e-3);
   }
 }
 

@@ -127,9 +127,7 @@ TEST_P(Guarded, a_bone_that_has_come_back_when_it_is_checked_has_brought_energy_
 {
   Model still = test::block_model({});
   still.bones = { "grip" };
-  for (std::size_t n = 0; n < still.nodes.size(); ++n)
-    if (still.nodes[n][0] == 0)
-      still.rigid.push_back({ static_cast<std::int32_t>(n), 0 });
+  test::hold_plane(still, 0, 0);
   const auto model = std::make_shared<const Model>(still);
   const auto solver = make_solver(model, { GetParam(), 2 });
   Guard guard(*solver, model, { 1000 });

@@ -1,14 +1,14 @@
 #include "block_model.hpp"
 #include "frontalis/physics/materials/lookup.hpp"
 #include "frontalis/solver/solver.hpp"
+#include "nodal_vectors.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
 
 using namespace frontalis;
-using Vectors = std::vector<std::array<double, 3>>;
+using test::Vectors;
 
 namespace
 {
@@ -48,15 +48,14 @@ Model mixed_block(Law law, const std::array<std::int32_t, 3>& voxels)
   return model;
 }
 
-Vectors random_displacements(const Model& model, double amplitude)
+// A muscle in all voxels.
+void add_strand(Model& model)
 {
-  std::mt19937 random(7);
-  std::uniform_real_distribution<double> value(-amplitude, amplitude);
-  Vectors u(model.nodes.size());
-  for (auto& v : u)
-    for (auto& c : v)
-      c = value(random);
-  return u;
+  Muscle muscle;
+  muscle.name = "strand";
+  muscle.stress_reference = 20e3;
+  muscle.passive = true;
+  test::add_muscle(model, { { 0.8f, 0, 0.6f } }, muscle);
 }
 
 std::string law_name(const testing::TestParamInfo<std::tuple<Backend, Law>>& info)
@@ -78,32 +77,7 @@ protected:
 TEST_P(Laws, ForcesAreTheGradientOfTheEnergy)
 {
   const Model model = mixed_block(std::get<1>(GetParam()), { { 5, 2, 2 } });
-  const auto energies = make_solver(std::make_shared<const Model>(model), { "reference", 0, 0 });
-  const auto solver_ = solver(model);
-  const Vectors u = random_displacements(model, 1.5e-4);
-  solver_->set_displacements(u);
-  Vectors f;
-  solver_->internal_forces(f);
-  double largest = 0;
-  for (const auto& v : f)
-    for (const double c : v)
-      largest = std::max(largest, std::abs(c));
-  ASSERT_GT(largest, 0);
-  const double step = 1e-8;
-  for (std::size_t n = 0; n < u.size(); ++n)
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      double energy[2];
-      for (int side = 0; side < 2; ++side)
-      {
-        Vectors moved = u;
-        moved[n][axis] += side == 0 ? -step : step;
-        energies->set_displacements(moved);
-        const Monitor m = energies->monitor();
-        energy[side] = m.internal + m.hourglass;
-      }
-      ASSERT_NEAR(f[n][axis], (energy[1] - energy[0]) / (2 * step), largest * 2e-5) << n << " " << axis;
-    }
+  test::expect_forces_from_energy(model, *solver(model), test::random_vectors(model, 1.5e-4, 7));
 }
 
 // If a body with muscle everywhere is rotated as a whole, its forces rotate with it.
@@ -117,14 +91,10 @@ TEST_P(Laws, ForcesTurnWithTheBody)
   {
     Model model = mixed_block(std::get<1>(GetParam()), { { 5, 2, 2 } });
     model.hourglass = hourglass;
-    Muscle muscle;
-    muscle.name = "strand";
-    muscle.stress_reference = 20e3;
-    muscle.passive = true;
-    test::add_muscle(model, { { 0.8f, 0, 0.6f } }, muscle);
+    add_strand(model);
     const auto solver_ = solver(model);
     solver_->advance(1e-9, { { 0.7f }, {} });
-    const Vectors u = random_displacements(model, 1.5e-4);
+    const Vectors u = test::random_vectors(model, 1.5e-4, 7);
     Vectors turned = u, f, f_turned;
     for (std::size_t n = 0; n < u.size(); ++n)
     {
@@ -163,7 +133,7 @@ TEST_P(Laws, AVoxelsOwnDirectionsGoBeforeTheMaterials)
   turned.materials[1].parameters[physics::first_direction + 1] = 0.6;
   turned.materials[1].parameters[physics::first_direction + 2] = 0.8;
   own.material_directions.assign(own.voxels.size(), { 0, 0.6f, 0.8f, 0, 0, 0 });
-  const Vectors u = random_displacements(own, 1.5e-4);
+  const Vectors u = test::random_vectors(own, 1.5e-4, 7);
   Vectors f[2];
   for (const auto& [model, out] : { std::pair{ &own, &f[0] }, { &turned, &f[1] } })
   {
@@ -185,7 +155,7 @@ TEST_P(Laws, ComesBackToRestFromALargeDistortion)
   const Model model = mixed_block(std::get<1>(GetParam()), { { 6, 3, 3 } });
   const auto solver_ = solver(model);
   // Moves every node by up to 0.4 voxels, so that some voxels keep little more than half of their volume.
-  solver_->set_displacements(random_displacements(model, 4e-4));
+  solver_->set_displacements(test::random_vectors(model, 4e-4, 7));
   const Monitor before = solver_->monitor();
   for (int i = 0; i < 10; ++i)
     solver_->advance(5e-3, {});
@@ -203,14 +173,10 @@ TEST_P(Laws, CrushedAndInvertedVoxelsPushBack)
     {
       Model model = mixed_block(std::get<1>(GetParam()), { { 6, 3, 3 } });
       model.integration = integration;
-      Muscle muscle;
-      muscle.name = "strand";
-      muscle.stress_reference = 20e3;
-      muscle.passive = true;
-      test::add_muscle(model, { { 0.8f, 0, 0.6f } }, muscle);
+      add_strand(model);
       const auto solver_ = solver(model);
       solver_->advance(1e-9, { { static_cast<float>(activation) }, {} });
-      const Vectors u = random_displacements(model, 1.2e-3);
+      const Vectors u = test::random_vectors(model, 1.2e-3, 7);
       solver_->set_displacements(u);
       EXPECT_LT(solver_->monitor().worst_jacobian, -0.2);
       Vectors f;

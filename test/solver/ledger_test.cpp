@@ -14,13 +14,6 @@ namespace
 
 using Vectors = std::vector<std::array<double, 3>>;
 
-void hold_end(Model& model)
-{
-  for (std::size_t n = 0; n < model.nodes.size(); ++n)
-    if (model.nodes[n][0] == 0)
-      model.rigid.push_back({ static_cast<std::int32_t>(n), -1 });
-}
-
 Model bar(double damping, HourglassControl hourglass = HourglassControl::scalar,
           Integration integration = Integration::one_point)
 {
@@ -30,7 +23,7 @@ Model bar(double damping, HourglassControl hourglass = HourglassControl::scalar,
   Model model = test::block_model(settings);
   model.hourglass = hourglass;
   model.integration = integration;
-  hold_end(model);
+  test::hold_plane(model, 0);
   return model;
 }
 

@@ -1,26 +1,15 @@
 #include "backends.hpp"
 #include "effect_scene.hpp"
+#include "nodal_vectors.hpp"
 
 #include <cmath>
-#include <random>
 
 namespace frontalis
 {
 namespace
 {
 
-using Vectors = std::vector<std::array<double, 3>>;
-
-Vectors random_field(const Model& model, double size, unsigned seed)
-{
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> value(-size, size);
-  Vectors field(model.nodes.size());
-  for (auto& x : field)
-    for (double& component : x)
-      component = value(random);
-  return field;
-}
+using test::Vectors;
 
 class Monitors : public test::EveryBackend
 {
@@ -37,8 +26,8 @@ TEST_P(Monitors, agree_with_the_reference)
         for (const bool own : { false, true })
         {
           const auto solver = make_solver(std::make_shared<const Model>(model), { own ? GetParam() : "reference", 2 });
-          solver->set_displacements(random_field(model, size, 1));
-          auto velocities = random_field(model, 0.1, 2);
+          solver->set_displacements(test::random_vectors(model, size, 1));
+          auto velocities = test::random_vectors(model, 0.1, 2);
           // A backend may omit nodes that cannot move.
           for (const auto& node : model.rigid)
             velocities[node.node] = { 0, 0, 0 };
@@ -85,7 +74,7 @@ TEST(CpuMonitor, same_input_same_bits_on_any_number_of_threads)
   for (const int threads : { 1, 4 })
   {
     const auto solver = make_solver(std::make_shared<const Model>(model), { "cpu", threads });
-    solver->set_displacements(random_field(model, 2e-4, 1));
+    solver->set_displacements(test::random_vectors(model, 2e-4, 1));
     seen[threads / 4] = solver->monitor();
   }
   EXPECT_EQ(seen[0].internal, seen[1].internal);

@@ -186,9 +186,7 @@ TEST_P(Motion, BonesCarryTheirNodes)
   s.damping = 2000;
   Model model = test::block_model(s);
   model.bones = { "jaw" };
-  for (std::size_t n = 0; n < model.nodes.size(); ++n)
-    if (model.nodes[n][0] == 0)
-      model.rigid.push_back({ static_cast<std::int32_t>(n), 0 });
+  test::hold_plane(model, 0, 0);
   const auto solver_ = solver(model);
   RigidTransform pose;
   const double a = 0.3;

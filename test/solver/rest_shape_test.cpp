@@ -24,9 +24,7 @@ Model film_on_block()
   BlockSettings settings;
   settings.voxels = { { 10, 6, 4 } };
   Model model = block_model(settings);
-  for (std::size_t n = 0; n < model.nodes.size(); ++n)
-    if (model.nodes[n][2] == 0)
-      model.rigid.push_back({ static_cast<std::int32_t>(n) });
+  hold_plane(model, 2);
   add_shell(model);
   return model;
 }

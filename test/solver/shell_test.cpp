@@ -2,6 +2,7 @@
 
 #include "backends.hpp"
 #include "contact_model.hpp"
+#include "nodal_vectors.hpp"
 #include "shell_model.hpp"
 
 #include "frontalis/model/effects.hpp"
@@ -16,7 +17,6 @@ namespace
 {
 
 using namespace test;
-using Vectors = std::vector<std::array<double, 3>>;
 
 class ShellBackend : public testing::TestWithParam<Backend>
 {
@@ -34,21 +34,13 @@ Model film_on_block(bool free = true, double young = 1e6)
   BlockSettings settings;
   settings.voxels = { { 7, 6, 4 } };
   Model model = block_model(settings);
-  for (std::size_t n = 0; n < model.nodes.size() && !free; ++n)
-    if (model.nodes[n][2] == 0)
-      model.rigid.push_back({ static_cast<std::int32_t>(n) });
+  if (!free)
+    hold_plane(model, 2);
   ShellSettings film;
   film.young = young;
   add_shell(model, film);
   check_model(model);
   return model;
-}
-
-Vectors displacements(const Solver& solver)
-{
-  Vectors u;
-  solver.displacements(u);
-  return u;
 }
 
 // Velocities that bend, stretch and shear the film.

@@ -46,12 +46,9 @@ TEST_P(Sliding, KeepsItsLevelOverARidge)
   s.young = 3e3;
   Model model = test::block_model(s);
   // The nodes of the underside are 3 mm above the roof.
-  std::vector<std::int32_t> underside;
-  for (std::size_t n = 0; n < model.nodes.size(); ++n)
-    if (model.nodes[n][2] == 0)
-      underside.push_back(static_cast<std::int32_t>(n));
   slide_on(
-      model, "roof", [&](const auto& p) { return roof_distance(slope, p); }, underside, 0.5e-3, 40e-3);
+      model, "roof", [&](const auto& p) { return roof_distance(slope, p); }, test::plane_of_nodes(model, 2), 0.5e-3,
+      40e-3);
   model.gravity = { { 40.0, 0, 0 } };  // gravity drags the body along x over the ridge
   const auto solver_ = solver(model);
   double worst = 0, off_roof = 0, travelled = 0;

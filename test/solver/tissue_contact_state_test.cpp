@@ -18,9 +18,7 @@ Model pressed_fold()
   settings.voxels = { { 10, 4, 3 } };
   settings.damping = 200;
   Model model = folded_sheet(settings, 8, 0.3);
-  for (std::size_t n = 0; n < model.nodes.size(); ++n)
-    if (model.nodes[n][2] == 0)
-      model.rigid.push_back({ static_cast<std::int32_t>(n) });
+  hold_plane(model, 2);
   model.gravity = { { 30, 20, -300 } };
   return model;
 }
@@ -141,9 +139,7 @@ TEST_P(TissuesTouch, the_time_step_is_that_of_a_model_in_contact)
   // The blocks have no damping, make full time steps, and are pressed together by their weight.
   model.gravity = { { 0, 0, -200 } };
   model.time_step_share = 1;
-  for (std::size_t n = 0; n < model.nodes.size(); ++n)
-    if (model.nodes[n][2] == 0)
-      model.rigid.push_back({ static_cast<std::int32_t>(n) });
+  hold_plane(model, 2);
   for (const auto estimate : { TimeStepEstimate::element, TimeStepEstimate::assembled })
   {
     model.time_step_estimate = estimate;

@@ -244,9 +244,7 @@ TEST_P(TissuesTouch, a_folded_sheet_touches_itself)
   push.mesh = top.surface;
   push.binding = top.binding;
   model.loads.push_back(push);
-  for (std::size_t n = 0; n < model.nodes.size(); ++n)
-    if (model.nodes[n][2] == 0)
-      model.rigid.push_back({ static_cast<std::int32_t>(n) });
+  hold_plane(model, 2);
   const auto solver = make(model, 2, true);
   solver->advance(1e-3, solver->controls());
   EXPECT_EQ(solver->ledger()["contact_stored"], 0);

@@ -82,9 +82,7 @@ TEST_P(Viscosity, energy_that_a_swinging_block_loses_is_accounted_for)
   test::BlockSettings settings;
   settings.voxels = { { 6, 3, 3 } };
   Model model = test::block_model(settings);
-  for (std::size_t n = 0; n < model.nodes.size(); ++n)
-    if (model.nodes[n][0] == 0)
-      model.rigid.push_back({ static_cast<std::int32_t>(n), -1 });
+  test::hold_plane(model, 0);
   model.materials[0].viscous_share = { { 0.4, 0 } };
   model.materials[0].viscous_time = { { 2e-3, 0 } };
   const auto swinging = make_solver(std::make_shared<const Model>(model), { GetParam(), 0, 0, true });
@@ -106,9 +104,7 @@ TEST_P(Viscosity, energy_is_accounted_for_where_stresses_relax_within_some_steps
   test::BlockSettings settings;
   settings.voxels = { { 4, 2, 2 } };
   Model model = test::block_model(settings);
-  for (std::size_t n = 0; n < model.nodes.size(); ++n)
-    if (model.nodes[n][0] == 0)
-      model.rigid.push_back({ static_cast<std::int32_t>(n), -1 });
+  test::hold_plane(model, 0);
   model.materials[0].viscous_share = { { 0.5, 0.2 } };
   model.materials[0].viscous_time = { { 4e-4, 4e-3 } };
   const auto swinging = make_solver(std::make_shared<const Model>(model), { GetParam(), 0, 0, true });

@@ -1,4 +1,5 @@
 #include "block_model.hpp"
+#include "physics/deformation.hpp"
 #include "true_frequency.hpp"
 
 #include "frontalis/physics/materials/lookup.hpp"
@@ -19,34 +20,8 @@ using test::Vectors;
 namespace
 {
 
-using Matrix = std::array<std::array<double, 3>, 3>;
-
-Matrix product(const Matrix& a, const Matrix& b)
-{
-  Matrix c{};
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j)
-      for (int k = 0; k < 3; ++k)
-        c[i][j] += a[i][k] * b[k][j];
-  return c;
-}
-
-Matrix random_rotation(std::mt19937& random)
-{
-  std::normal_distribution<double> normal;
-  double q[4], length = 0;
-  for (double& x : q)
-  {
-    x = normal(random);
-    length += x * x;
-  }
-  for (double& x : q)
-    x /= std::sqrt(length);
-  const double w = q[0], x = q[1], y = q[2], z = q[3];
-  return { { { { 1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y) } },
-             { { 2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x) } },
-             { { 2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y) } } } };
-}
+using physics::test::Matrix;
+using physics::test::operator*;
 
 // A random deformation with stretches from 1 / `most` to `most`. Three out of four keep the volume to within 2 %.
 Matrix random_gradient(std::mt19937& random, double most, int index)
@@ -59,10 +34,8 @@ Matrix random_gradient(std::mt19937& random, double most, int index)
     J *= s;
   }
   const double scale = index % 4 == 0 ? 1 : (1 + 0.02 * value(random)) / std::cbrt(J);
-  Matrix diagonal{};
-  for (int i = 0; i < 3; ++i)
-    diagonal[i][i] = scale * stretch[i];
-  return product(random_rotation(random), product(diagonal, random_rotation(random)));
+  const Matrix first = physics::test::random_rotation(random), last = physics::test::random_rotation(random);
+  return last * (physics::test::diagonal(scale * stretch[0], scale * stretch[1], scale * stretch[2]) * first);
 }
 
 // The true largest eigenvalue of a single voxel, divided by its bound.
@@ -72,7 +45,7 @@ double true_over_bound(const Model& model, const Matrix& F)
   for (std::size_t n = 0; n < 8; ++n)
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j)
-        u[n][i] += (F[i][j] - (i == j ? 1 : 0)) * test::rest(model, n)[j];
+        u[n][i] += (F.a[i][j] - (i == j ? 1 : 0)) * test::rest(model, n)[j];
   std::vector<std::size_t> free(24);
   std::iota(free.begin(), free.end(), 0);
   return test::true_over_bound(model, u, std::vector<double>(8, model.materials[0].density * 1e-9 / 8), free);

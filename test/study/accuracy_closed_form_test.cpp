@@ -1,3 +1,4 @@
+#include "files.hpp"
 #include "frontalis/error.hpp"
 #include "frontalis/study/accuracy.hpp"
 
@@ -5,8 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 
 namespace frontalis
 {
@@ -16,20 +15,12 @@ namespace
 class ClosedForms : public testing::TestWithParam<std::string>
 {
 protected:
-  void SetUp() override
-  {
-    std::string pattern = (std::filesystem::temp_directory_path() / "frontalis_closed_form_XXXXXX").string();
-    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-    folder = pattern;
-  }
-  void TearDown() override { std::filesystem::remove_all(folder); }
-
   ClosedForm form(const std::string& name) const
   {
     for (ClosedForm& form : closed_forms())
       if (form.name == name)
       {
-        form.plan.folder = folder;
+        form.plan.folder = folder.path();
         form.plan.edges.resize(3);
         form.plan.knobs = { "voxel" };
         form.plan.quick = true;
@@ -39,7 +30,7 @@ protected:
     throw Error("no closed form is called " + name);
   }
 
-  std::string folder;
+  TemporaryFolder folder;
 };
 
 AccuracyFindings study(const ClosedForm& form)

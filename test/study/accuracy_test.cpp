@@ -1,3 +1,4 @@
+#include "files.hpp"
 #include "frontalis/error.hpp"
 #include "frontalis/study/accuracy.hpp"
 #include "frontalis/study/voxel_model.hpp"
@@ -7,10 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 
 namespace frontalis
@@ -68,9 +66,7 @@ class Accuracy : public testing::Test
 protected:
   void SetUp() override
   {
-    std::string pattern = (std::filesystem::temp_directory_path() / "frontalis_accuracy_XXXXXX").string();
-    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-    plan.folder = pattern;
+    plan.folder = folder.path();
     plan.standard.profile.voxel.fill(2e-3);
     plan.edges = { 4e-3, 2e-3, 1e-3, 0.5e-3 };
     plan.knobs = { "voxel", "hourglass" };
@@ -87,7 +83,6 @@ protected:
     };
     maker.bake = bar;
   }
-  void TearDown() override { std::filesystem::remove_all(plan.folder); }
 
   AccuracyFindings study()
   {
@@ -111,6 +106,7 @@ protected:
     return "";
   }
 
+  TemporaryFolder folder;
   AccuracyPlan plan;
   ModelMaker maker;
   int moved = 0, interrupt_after = 1 << 30;
@@ -234,10 +230,7 @@ std::map<std::string, std::string> files_in(const std::string& folder, const std
   std::map<std::string, std::string> files;
   for (const auto& entry : std::filesystem::directory_iterator(folder))
     if (entry.path().extension() == extension)
-    {
-      std::ifstream file(entry.path(), std::ios::binary);
-      files[entry.path().filename()] = { std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>() };
-    }
+      files[entry.path().filename()] = text_of(entry.path());
   return files;
 }
 
@@ -245,11 +238,10 @@ TEST_F(Accuracy, variants_go_on_from_checkpoints_with_the_same_bits)
 {
   plan.knobs = { "hourglass" };
   plan.edges = { 4e-3, 2e-3, 1e-3 };
-  const std::string folder = plan.folder;
-  plan.folder = folder + "/whole";
+  plan.folder = folder / "whole";
   ASSERT_TRUE(study().complete);
   const auto whole = files_in(plan.folder + "/variants", ".motion");
-  plan.folder = folder + "/parts";
+  plan.folder = folder / "parts";
   int checkpoints = 0, calls = 0;
   // Each round is interrupted after about 17 calls, within the 30 slices of a variant or while the variant settles.
   for (bool complete = false; !complete; ++calls)

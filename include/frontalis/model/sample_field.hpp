@@ -26,6 +26,10 @@ void one_by_one(std::size_t count, const std::function<void(std::size_t)>& body)
 /// beginning with the middle point of the cluster.
 constexpr double cluster_extent = 9.01;
 
+/// Distance that sliding nodes may go from where nodes rest [m], unless a program gives another one. It is greater than
+/// motions of skin.
+constexpr double usual_travel = 20e-3;
+
 /// Samples a distance every `spacing` [m] in all bricks (physics/distance_field.hpp) that sliding nodes can reach. A
 /// node can reach a brick within `travel` [m] of its rest position. A brick gets samples if its distances from
 /// the surface include one between the smallest and the largest distance at rest of the nodes that reach it, with a
@@ -55,6 +59,6 @@ std::int32_t slide_on(Model& model, const std::string& name, SampledField field,
                       const std::vector<std::int32_t>& nodes);
 /// Like the function above, for a surface that is given by its distance function, which is sampled here.
 std::int32_t slide_on(Model& model, const std::string& name, const Distance& distance,
-                      const std::vector<std::int32_t>& nodes, double spacing = 0.5e-3, double travel = 20e-3);
+                      const std::vector<std::int32_t>& nodes, double spacing = 0.5e-3, double travel = usual_travel);
 
 }  // namespace frontalis

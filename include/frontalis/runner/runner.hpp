@@ -84,10 +84,9 @@ public:
   /// Sets activations (0..1) by the names of muscles; other muscles keep theirs. If a name is unknown or a value is not
   /// within 0..1, nothing is changed and an Error names all of them.
   void set_activation(const std::map<std::string, double>& activation);
-  /// Sets a named expression of the model or a sum of action units (named_controls.hpp): all activations, and the
-  /// motions of the bones that any of these move. Throws an Error that lists the existing names if a name is unknown.
+  /// Sets a named expression of the model (named_controls.hpp): all activations, and the motions of the bones that any
+  /// expression moves. Throws an Error that lists the existing names if the name is unknown.
   void set_expression(const std::string& name);
-  void set_action_units(const std::map<std::string, double>& intensities);
 
   /// Sets the motion of a bone from its rest pose, in the face frame. The bone moves there within about a frame, as
   /// activations do. If there is no such bone, or the motion is not finite and rigid, nothing is changed and an Error

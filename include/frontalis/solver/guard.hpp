@@ -20,7 +20,7 @@ enum class Instability
   hourglass,   ///< more energy in the hourglass modes alone than the bound of all energy allows
   inverted,    ///< more voxels are inverted than allowed
   time_step,   ///< steps were longer than the critical time step
-  past_rim,    ///< a sliding node is far past the rim of its surface's field
+  past_rim,    ///< a sliding node is far outside its surface's field
   inside_body  ///< tissue is deeper inside of a body than the body's field reaches
 };
 

@@ -127,7 +127,7 @@ public:
   virtual EnergyLedger ledger() = 0;
   /// Forces of the latest step, one per entry of touched_bodies(model); empty if the backend does not compute them.
   virtual std::vector<Reaction> reactions() const { return {}; }
-  /// Present poses of touched_bodies(model), in the local frame; empty if the backend does not compute them.
+  /// Present poses of the same bodies in the local frame, as many as reactions(); empty if it does not compute them.
   virtual std::vector<RigidTransform> bodies() const { return {}; }
   virtual Profile profile() const = 0;
 

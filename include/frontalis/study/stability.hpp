@@ -45,7 +45,7 @@ struct StabilitySettings
 {
   Backend backend = "cpu";
   bool long_runs = false;  ///< run every case in full length, even if it has a short form
-  /// Returns the model of config/NAME.yaml; throws Skipped if there is none.
+  /// Returns the model of the scene NAME.yaml, of config or for a case; throws Skipped if there is none.
   std::function<std::shared_ptr<const Model>(const std::string& name)> scene;
   /// Called with the model of each motion before it begins.
   std::function<void(const Model&)> model = [](const Model&) {};

@@ -22,9 +22,6 @@ namespace frontalis
 namespace
 {
 
-/// Distance that nodes may slide beyond the area in which nodes rest [m]. It is greater than motions of skin.
-constexpr double travel = 20e-3;
-
 Vector3d normal_of(const std::array<Vector3d, 3>& v) { return (v[1] - v[0]).cross(v[2] - v[0]).normalized(); }
 
 /// Whether `ask` is true at any point of a triangle; tries points at most `spacing` [m] apart.
@@ -43,7 +40,7 @@ bool any_point(const std::array<Vector3d, 3>& v, double spacing, const Ask& ask)
   return false;
 }
 
-/// Extends a selection of triangles across their edges by up to `travel`, as long as normals differ by at most 78
+/// Extends a selection of triangles across their edges by up to usual_travel, as long as normals differ by at most 78
 /// degrees from that of the selected triangle where the path began. The selection thus goes round the rim of a bone,
 /// but not behind the bone. Enters only triangles for which enters(triangle) is true.
 template <class Enters>
@@ -75,7 +72,7 @@ void grow(const TriangleMesh& mesh, std::vector<bool>& selected, const Enters& e
       const Vector3d middle = 0.5 * (vertex(mesh, a) + vertex(mesh, b));
       const double far = way + (at == nullptr ? 0 : (middle - *at).norm());
       for (const std::size_t other : at_edge.at(std::minmax(a, b)))
-        if (!selected[other] && far < travel && normal[other].dot(origin) >= least_cosine)
+        if (!selected[other] && far < usual_travel && normal[other].dot(origin) >= least_cosine)
           entries.push({ far, other, middle, origin });
     }
   };
@@ -351,7 +348,7 @@ SampledField distance_field(const std::vector<SlidingSurface>& surfaces, const s
   const auto distance = [&](const std::array<double, 3>& local)
   { return distance_from(sheets, of_thread.local(), frame.to_scene(to_vector(local))); };
   constexpr std::size_t grain = 16;
-  return sample_field(rest, distance, spacing, travel,
+  return sample_field(rest, distance, spacing, usual_travel,
                       [&](std::size_t count, const std::function<void(std::size_t)>& body)
                       { parallel_for(monitor, count, grain, body); });
 }

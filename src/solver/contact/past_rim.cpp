@@ -3,8 +3,29 @@
 #include "frontalis/model/sample_field.hpp"
 #include "solver/contact/gliding_nodes.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace frontalis
 {
+namespace
+{
+
+// Position of a sliding node in the frame of its surface, which is that of the bone at rest.
+std::array<double, 3> place_of(const Model& model, const SlidingNode& node, const NodalVectors& displacements,
+                               const std::vector<RigidTransform>& bones)
+{
+  auto p = rest_position(model, node.node);
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    p[axis] += displacements[node.node][axis];
+  const std::int32_t bone = model.constraint_surfaces[node.surface].bone;
+  if (bone < 0)
+    return p;
+  const auto at_rest = pose_of(bones[bone]).inwards({ p[0], p[1], p[2] });
+  return { { at_rest.x, at_rest.y, at_rest.z } };
+}
+
+}  // namespace
 
 void find_nodes_past_rim(const Model& model, const NodalVectors& displacements,
                          const std::vector<RigidTransform>& bones, Monitor& monitor)
@@ -15,21 +36,32 @@ void find_nodes_past_rim(const Model& model, const NodalVectors& displacements,
   constexpr double far = 4e-3;
   for (const SlidingNode& node : model.sliding)
   {
-    const ConstraintSurface& surface = model.constraint_surfaces[node.surface];
-    auto p = rest_position(model, node.node);
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      p[axis] += displacements[node.node][axis];
-    if (surface.bone >= 0)
-    {
-      const auto at_rest = pose_of(bones[surface.bone]).inwards({ p[0], p[1], p[2] });
-      p = { { at_rest.x, at_rest.y, at_rest.z } };
-    }
-    if (has_samples_near(surface.field, p, 0))
+    const SampledField& field = model.constraint_surfaces[node.surface].field;
+    const auto p = place_of(model, node, displacements, bones);
+    if (has_samples_near(field, p, 0))
       continue;
     ++monitor.past_rim;
-    if (!has_samples_near(surface.field, p, far))
+    if (!has_samples_near(field, p, far))
       monitor.lost_node = node.node;
   }
+}
+
+double distance_from_rest(const Model& model, std::int32_t node, const NodalVectors& displacements,
+                          const std::vector<RigidTransform>& bones)
+{
+  double nearest = 1e300;
+  for (const SlidingNode& own : model.sliding)
+    if (own.node == node)
+    {
+      const auto p = place_of(model, own, displacements, bones);
+      for (const SlidingNode& other : model.sliding)
+        if (other.surface == own.surface)
+        {
+          const auto q = rest_position(model, other.node);
+          nearest = std::min(nearest, std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]));
+        }
+    }
+  return nearest;
 }
 
 }  // namespace frontalis

@@ -11,4 +11,9 @@ namespace frontalis
 void find_nodes_past_rim(const Model& model, const NodalVectors& displacements,
                          const std::vector<RigidTransform>& bones, Monitor& monitor);
 
+/// Distance [m] of a sliding node from the nearest rest position of a node that slides on the same surface, in the
+/// frame of the surface. If it is above usual_travel, the surface was not sampled there, whether it goes on or not.
+double distance_from_rest(const Model& model, std::int32_t node, const NodalVectors& displacements,
+                          const std::vector<RigidTransform>& bones);
+
 }  // namespace frontalis

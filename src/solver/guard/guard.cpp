@@ -4,6 +4,7 @@
 #include "solver/energy/energy_bound.hpp"
 #include "frontalis/physics/mutation.hpp"
 #include "frontalis/solver/rigid_motion.hpp"
+#include "solver/contact/past_rim.hpp"
 #include "solver/guard/instability_report.hpp"
 
 #include <fmt/format.h>
@@ -220,9 +221,15 @@ InstabilityReport Guard::Implementation::examined(Instability finding, const Con
   // voxel is the stiffest.
   std::int32_t voxel =
       !(worst.worst_jacobian >= crushed) || worst.stiffest_voxel < 0 ? worst.worst_voxel : worst.stiffest_voxel;
+  double strayed = 0;
   if (finding == Instability::past_rim)
+  {
     voxel = voxel_at(worst.lost_node);
-  return describe(*model, finding, time, std::max(voxel, 0), worst.worst_jacobian, activation, moved);
+    NodalVectors displacements;
+    solver.displacements(displacements);
+    strayed = distance_from_rest(*model, worst.lost_node, displacements, solver.controls().bone);
+  }
+  return describe(*model, finding, time, std::max(voxel, 0), worst.worst_jacobian, activation, moved, strayed);
 }
 
 Guard::Guard(Solver& solver, std::shared_ptr<const Model> model, const GuardSettings& settings)

@@ -1,5 +1,7 @@
 #include "solver/guard/instability_report.hpp"
 
+#include "frontalis/model/sample_field.hpp"
+
 #include <fmt/ranges.h>
 
 #include <algorithm>
@@ -36,7 +38,7 @@ struct Cause
 
 Cause cause_of(const Model& model, Instability kind, std::int32_t e, const std::vector<std::int32_t>& materials,
                const std::vector<std::int32_t>& fibres, const std::vector<float>& activation,
-               const std::vector<bool>& moved)
+               const std::vector<bool>& moved, double strayed)
 {
   if (kind == Instability::time_step)
     return { "the time step", "lower accuracy's time_step_share" };
@@ -47,8 +49,16 @@ Cause cause_of(const Model& model, Instability kind, std::int32_t e, const std::
   const auto& corners = model.voxel_nodes[e];
   const auto sliding = held(model.sliding, corners);
   if (kind == Instability::past_rim)
-    return { "sliding on surface " + model.constraint_surfaces[sliding->surface].name,
+  {
+    const std::string& surface = model.constraint_surfaces[sliding->surface].name;
+    if (strayed > usual_travel)
+      return { fmt::format(
+                   "sliding on surface {}, {:.1f} mm away from where its nodes rest (it is known up to {:g} mm)",
+                   surface, 1e3 * strayed, 1e3 * usual_travel),
+               "hold the tissue nearby, or let muscles, loads and bones move it less" };
+    return { "sliding past the rim of surface " + surface,
              "continue the surface beyond the tissue, or hold the tissue near its rim" };
+  }
   if (kind == Instability::inside_body)
     return { "contact", "press less deep, or move the body more slowly" };
   const auto rigid = held(model.rigid, corners);
@@ -102,13 +112,13 @@ std::string words_for(Instability instability)
                                     "hourglass energy grows without a cause",
                                     "voxels turn inside out",
                                     "the time step is longer than critical",
-                                    "nodes have slid past the rim of their surface",
+                                    "nodes have left the known part of their surface",
                                     "tissue is deep inside of a body that it touches" };
   return words[static_cast<int>(instability)];
 }
 
 InstabilityReport describe(const Model& model, Instability kind, double time, std::int32_t voxel, double jacobian,
-                           const std::vector<float>& activation, const std::vector<bool>& moved)
+                           const std::vector<float>& activation, const std::vector<bool>& moved, double strayed)
 {
   InstabilityReport report;
   report.kind = kind;
@@ -134,7 +144,7 @@ InstabilityReport describe(const Model& model, Instability kind, double time, st
     report.material.push_back(model.materials[model.mixture_material[m]].name);
   for (const auto f : fibres)
     report.muscle.push_back(model.muscles[model.fibre_muscle[f]].name);
-  const Cause cause = cause_of(model, kind, voxel, materials, fibres, activation, moved);
+  const Cause cause = cause_of(model, kind, voxel, materials, fibres, activation, moved, strayed);
   report.effect = cause.effect;
   report.advice = cause.advice;
   return report;

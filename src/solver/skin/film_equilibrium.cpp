@@ -18,12 +18,6 @@ constexpr double near_critical = 0.5;
 constexpr double tolerance = 3e-4;
 
 template <class Tensor>
-float trace(const Tensor& a)
-{
-  return a[0] + a[1] + a[2];
-}
-
-template <class Tensor>
 float contract(const Tensor& a, const Tensor& b)
 {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + 2 * (a[3] * b[3] + a[4] * b[4] + a[5] * b[5]);

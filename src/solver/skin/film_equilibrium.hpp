@@ -42,6 +42,7 @@ public:
 private:
   // Symmetric tensor: xx, yy, zz, xy, xz, yz.
   using Tensor = std::array<float, 6>;
+  static float trace(const Tensor& a) { return a[0] + a[1] + a[2]; }
   using Field = CellMeans::Field;
 
   // Heights, and the results of apply() for them, per vertex.

@@ -124,7 +124,7 @@ void FilmEquilibrium::make_operators()
     {
       neighbour_.push_back(to);
       edge_.push_back(edge.first);
-      laplace_.push_back(edge.first[0] + edge.first[1] + edge.first[2]);
+      laplace_.push_back(trace(edge.first));
       inside = inside && edge.second == 2;
     }
     begin_.push_back(static_cast<std::int32_t>(neighbour_.size()));

@@ -3,7 +3,6 @@
 #include "study/accuracy/accuracy_run.hpp"
 
 #include "frontalis/error.hpp"
-#include "frontalis/physics/number.hpp"
 #include "frontalis/runner/face_frame.hpp"
 #include "frontalis/solver/guard.hpp"
 #include "frontalis/study/step_time.hpp"
@@ -57,23 +56,6 @@ double largest_size(const Model& model)
       { model.size[0] * model.spacing[0], model.size[1] * model.spacing[1], model.size[2] * model.spacing[2] });
 }
 
-std::vector<float> vertex_areas(const Model& model)
-{
-  std::vector<float> areas(model.skin.vertices.size(), 0);
-  for (const auto& t : model.skin.triangles)
-  {
-    const auto corner = [&](int i)
-    {
-      const auto& p = model.skin.vertices[t[i]];
-      return physics::Vec3<double>{ p[0], p[1], p[2] };
-    };
-    const auto normal = cross(corner(1) - corner(0), corner(2) - corner(0));
-    for (const auto v : t)
-      areas[v] += static_cast<float>(norm(normal) / 6);
-  }
-  return areas;
-}
-
 }  // namespace
 
 std::string machine_of(const Solver& solver, int threads)
@@ -102,7 +84,8 @@ std::optional<VariantMotion> play_variant(const std::shared_ptr<const Model>& mo
   VariantCheckpoint state;
   VariantMotion& motion = state.motion;
   motion.voxels = static_cast<double>(model->voxels.size());
-  motion.area = vertex_areas(*model);
+  const std::vector<double> area = vertex_areas(model->skin);
+  motion.area.assign(area.begin(), area.end());
   try
   {
     SolverSettings settings{ setting.backend, threads };

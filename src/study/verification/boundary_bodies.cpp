@@ -145,13 +145,13 @@ Surface box_surface(const std::string& name, const Eigen::Matrix3d& turn, const 
 
 Eigen::Vector3d vertex(const TriangleMesh& mesh, std::int32_t index) { return to_vector(mesh.vertices[index]); }
 
-}  // namespace
-
 double triangle_area(const TriangleMesh& mesh, const std::array<std::int32_t, 3>& t)
 {
   const Eigen::Vector3d a = vertex(mesh, t[0]);
   return 0.5 * (vertex(mesh, t[1]) - a).cross(vertex(mesh, t[2]) - a).norm();
 }
+
+}  // namespace
 
 BoundaryBody curved_layer(double thickness, double poisson, bool slides, bool stiff)
 {
@@ -172,7 +172,7 @@ BoundaryBody curved_layer(double thickness, double poisson, bool slides, bool st
   body.scene.constraints = { constraint_at("base",
                                            slides ? SceneConstraint::Kind::sliding : SceneConstraint::Kind::rigid) };
   if (!stiff)
-    body.bound = 0.03;
+    body.bounds = { { 0.03, 0.015 } };
   body.converges = !(stiff && slides);
   // Gravity is so weak that strains are about 1e-4.
   const double gravity = slides ? 0.1 : 1;
@@ -197,7 +197,7 @@ BoundaryBody pressed_sphere(double poisson)
                              shape_surface("skin", Shape::Kind::sphere, b, 1e-3), poisson);
   keep_an_eighth(body.scene);
   body.mirror = BoundaryBody::Mirror::symmetric;
-  body.bound = 0.01;
+  body.bounds = { { 0.01, 0.005 } };
   SceneLoad load;
   load.name = "pressure";
   load.kind = SceneLoad::Kind::pressure;

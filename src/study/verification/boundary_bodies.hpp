@@ -3,8 +3,9 @@
 #include "frontalis/scene/scene.hpp"
 #include "frontalis/study/voxel_model.hpp"
 
+#include <array>
+#include <cmath>
 #include <functional>
-#include <limits>
 #include <string>
 
 namespace frontalis
@@ -29,17 +30,13 @@ struct BoundaryBody
   /// Traction on the end of a bar [Pa] and the mesh of that end. Not set if the scene has all loads.
   std::function<Point(const Point&)> traction;
   TriangleMesh end;
-  /// Largest error that passes with voxels of 2 mm and `boundary: true`. It is twice the largest error that passes with
-  /// voxels of 1 mm. NaN: no bound.
-  double bound = std::numeric_limits<double>::quiet_NaN();
+  /// Largest errors that pass with voxels of 2 mm and of 1 mm and `boundary: true`. NaN: no bound.
+  std::array<double, 2> bounds{ { std::nan(""), std::nan("") } };
   /// Whether the order of convergence with `boundary: true` has a bound: 1.4, or errors of 1 % at 2 mm and 0.5 % at 1
   /// mm
   bool converges = true;
   double period = 0;  ///< approximate period of the slowest vibration [s]
 };
-
-/// Area of a triangle of a mesh [m2].
-double triangle_area(const TriangleMesh& mesh, const std::array<std::int32_t, 3>& triangle);
 
 /// A layer under gravity on a sphere of radius 60.37 mm, to which it is fixed or on which it slides. The exact
 /// displacement solves the radial equations for u = U(r) cos(theta) e_r + W(r) sin(theta) e_theta, found with 4000

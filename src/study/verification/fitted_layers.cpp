@@ -131,7 +131,7 @@ FittedLayer fitted_layer(bool mixed)
     held.crop.lower[2] = body.scene.constraints[0].crop.upper[2] = held_above * inner;
     body.scene.constraints.push_back(held);
   }
-  body.bound = std::numeric_limits<double>::quiet_NaN();  // at 2 mm the error is above the 2 % that a layer should have
+  body.bounds = { { std::nan(""), 0.01 } };  // at 2 mm the error is above the 2 % that a layer should have
   const Arc arc = solve_layer(mixed, gravity, 8);
   layer.mesh_error = relative_difference(solve_layer(mixed, gravity, 4), arc);
   body.exact = [arc](const Point& p) -> Point

@@ -96,10 +96,7 @@ struct Difference
 void compare(const BoundaryBody& body, const Model& model, const TriangleMesh& mesh, const Binding& binding,
              const std::array<std::vector<double>, 3>& u, Difference& sum)
 {
-  std::vector<double> area(mesh.vertices.size(), 0);
-  for (const auto& t : mesh.triangles)
-    for (const auto corner : t)
-      area[corner] += triangle_area(mesh, t) / 3;
+  const std::vector<double> area = vertex_areas(mesh);
   for (std::size_t v = 0; v < area.size(); ++v)
   {
     const Point exact = body.exact(model.to_scene(mesh.vertices[v]));
@@ -173,7 +170,7 @@ void measure(const std::vector<BoundaryBody>& bodies, const Backend& backend, co
       table.add(row);
       for (const std::size_t at : { 1, 3 })
         finding.checks.absolute(fmt::format("{}, {}, {}", body.name, millimetres(edges[at]), boundary), "1", 0,
-                                errors[at], staircase ? std::nan("") : body.bound * (at == 1 ? 1 : 0.5));
+                                errors[at], staircase ? std::nan("") : body.bounds[at / 2]);
       if (staircase)
         continue;
       const bool converges = order >= 1.4 || (errors[1] <= 0.01 && errors[3] <= 0.005);
