@@ -104,13 +104,18 @@ struct CpuKernelBody
     Real* below = buffer;
     Real* above = buffer + 4 * static_cast<std::size_t>(g.buffer_stride);
     const bool with_bound = task == KernelTask::step_and_bound;
-    const std::int32_t used = (with_bound ? 4 : 3) * g.buffer_stride;
-    clear(below, used);
+    const auto clear_plane = [&](Real* plane, std::int32_t k)
+    {
+      const std::int32_t count = k < 0 ? 0 : g.plane_nodes[k + 1] - g.plane_nodes[k] + 2 * Tile::width;
+      for (int c = 0; c < (with_bound ? 4 : 3); ++c)
+        clear(plane + c * g.buffer_stride, count);
+    };
+    clear_plane(below, first - 1);
     Real frequency_squared = 0;
     // Voxel plane k lies between node planes k and k + 1. The lowest voxel plane is computed for its upper nodes only.
     for (std::int32_t k = first - 1; k < last; ++k)
     {
-      clear(above, used);
+      clear_plane(above, k + 1 < g.planes ? k + 1 : -1);
       if (k >= 0 && k < g.planes - 1)
         plane_forces<Form>(g, k, below, above, k >= first, with_bound);
       if (k >= first)

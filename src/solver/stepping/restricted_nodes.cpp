@@ -53,14 +53,20 @@ void set(SlidingBlock<Real>& block, int lane, const Point& normal, double offset
 
 template <class Real>
 RestrictedNodes<Real>::RestrictedNodes(const Model& model, const SlideKernels<Real>& kernels)
-    : model_(model), kernels_(kernels), rigid_(model.rigid), prescribed_(model.prescribed)
+    : model_(model), kernels_(kernels), prescribed_(model.prescribed)
 {
   for (const auto& surface : model.constraint_surfaces)
     fields_.push_back(view(surface.field));
-  sort_by_node(rigid_);
+  auto rigid = model.rigid;
+  sort_by_node(rigid);
   sort_by_node(prescribed_);
-  for (const RigidNode& node : rigid_)
-    rigid_rest_.push_back(rest_point(model, node.node));
+  for (const RigidNode& node : rigid)
+    if (node.bone >= 0)
+      rigid_.push_back({ node.node, node.bone, rest_point(model, node.node) });
+    else if (!still_.empty() && still_.back().node + still_.back().count == node.node)
+      ++still_.back().count;
+    else
+      still_.push_back({ node.node, 1 });
   auto sliding = model.sliding;
   sort_by_node(sliding);
   // Replacing a plane that was kept for several steps jolts the tissue. If any surface has friction, no node keeps its
@@ -137,7 +143,7 @@ template <class Real>
 void RestrictedNodes<Real>::list_arrays(ArrayList& list)
 {
   list.add(Effect::rigid_nodes, "rigid nodes", rigid_);
-  list.add(Effect::rigid_nodes, "rigid nodes", rigid_rest_);
+  list.add(Effect::rigid_nodes, "rigid nodes", still_);
   list.add(Effect::prescribed_displacement, "prescribed nodes", prescribed_);
   gliding_.list_arrays(list);
   list.add(Effect::sliding, "nodes that slide", sliding_);
@@ -309,6 +315,7 @@ void RestrictedNodes<Real>::constrain(const NodeShare& share, Real* const u[3], 
 
   if (!prescribed_.empty())
     follow_paths(first, last, u, v, before, step);
+  hold_still(first, last, u, v);
   if (!rigid_.empty())
     follow_bones(first, last, u, v, before, step);
 }
@@ -335,18 +342,36 @@ void RestrictedNodes<Real>::follow_bones(std::int32_t first, std::int32_t last, 
 {
   const auto nodes = range(rigid_, first, last);
   const auto dt = static_cast<Real>(step.dt);
+  physics::Pose pose;
+  std::int32_t bone = -1;
   for (auto r = nodes.first; r != nodes.second; ++r)
   {
-    if (r->bone < 0)
+    if (r->bone != bone)
     {
-      for (int axis = 0; axis < 3; ++axis)
-        u[axis][r->node] = v[axis][r->node] = 0;
-      continue;
+      bone = r->bone;
+      pose = pose_of(step.bone[bone]);
     }
-    const Point p = rigid_rest_[r - rigid_.begin()], moved = pose_of(step.bone[r->bone]).outwards(p) - p;
+    const Point moved = pose.outwards(r->rest) - r->rest;
     const double to[3] = { moved.x, moved.y, moved.z };
     for (int axis = 0; axis < 3; ++axis)
       physics::move_to(to[axis], before[axis][r->node], dt, u[axis][r->node], v[axis][r->node]);
+  }
+}
+
+// Holds the rigid nodes that no bone moves, run by run. A run may begin in the share of another thread.
+template <class Real>
+void RestrictedNodes<Real>::hold_still(std::int32_t first, std::int32_t last, Real* const u[3], Real* const v[3]) const
+{
+  const auto before = [](const StillRun& run, std::int32_t node) { return run.node + run.count <= node; };
+  for (auto run = std::lower_bound(still_.begin(), still_.end(), first, before);
+       run != still_.end() && run->node < last; ++run)
+  {
+    const std::int32_t begin = std::max(run->node, first), end = std::min(run->node + run->count, last);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      std::fill(u[axis] + begin, u[axis] + end, Real(0));
+      std::fill(v[axis] + begin, v[axis] + end, Real(0));
+    }
   }
 }
 
