@@ -4,6 +4,7 @@
 #include "frontalis/physics/element/relaxation.hpp"
 #include "frontalis/physics/element/voxel_forces.hpp"
 #include "solver/cpu/cpu_kernel.hpp"
+#include "solver/cpu/prefetch.hpp"
 #include "solver/cpu/simd_lanes.hpp"
 #include "solver/law_share.hpp"
 
@@ -46,16 +47,6 @@ struct CpuElement
     bool owned;          ///< false in the plane below a slab, which is computed here only for its upper nodes
     bool with_bound;     ///< whether stiffness bounds are computed
     double* work;        ///< sum of the work of fibres [J]; null without a ledger
-
-    /// Fetches an entry of a table into the cache. It may lie behind the end of the table.
-    template <class Entry>
-    static FRONTALIS_LAW void prefetch(const Entry* entry)
-    {
-      constexpr std::size_t line = 64;
-      const char* const bytes = reinterpret_cast<const char*>(entry);
-      for (std::size_t at = 0; at < sizeof(Entry); at += line)
-        __builtin_prefetch(bytes + at);
-    }
 
     FRONTALIS_LAW Batch load(const float* lane_values) const { return Lane::load(lane_values + offset); }
     FRONTALIS_LAW const Real* scale() const { return g.scale; }
@@ -217,7 +208,7 @@ struct CpuElement
       for (int offset = 0; offset < Tile::width; offset += lanes)
         if (offset % Tile::strip < g.tiles[t].count[offset / Tile::strip])
         {
-          Voxels::prefetch(g.stiffness + t + 1);
+          prefetch(g.stiffness + t + 1);
           visit(Batches{ g, g.tiles + t, t, offset, owned, with_bound, work });
         }
   }

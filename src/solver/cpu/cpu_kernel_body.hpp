@@ -41,23 +41,24 @@ struct CpuKernelBody
   {
     const std::int32_t first = g.plane_nodes[plane], count = g.plane_nodes[plane + 1] - first;
     const float* const mobility = g.mobility + first;
-    // Each lane has a maximum of its own, so that the loop is vectorised. `odd` becomes NaN if a stiffness is NaN.
-    Real most[lanes] = {}, odd[lanes] = {};
-    const auto take = [&](std::int32_t n, int lane)
+    using N = typename Element::N;
+    // Maxima ignore NaN. `odd` becomes NaN if a stiffness is NaN.
+    Batch most(Real(0)), odd(Real(0));
+    const auto take = [&](const Batch& squared)
     {
-      const Real squared = stiffness[n] * static_cast<Real>(mobility[n]);
-      most[lane] = squared > most[lane] ? squared : most[lane];
-      odd[lane] += squared - squared;
+      most = N::max(most, squared);
+      odd = odd + (squared - squared);
     };
     std::int32_t n = 0;
     for (; n + lanes <= count; n += lanes)
-      for (int lane = 0; lane < lanes; ++lane)
-        take(n + lane, lane);
+      take(Element::Lane::load(stiffness + n) * Element::Lane::load(mobility + n));
     for (; n < count; ++n)
-      take(n, 0);
+      take(Batch(stiffness[n] * static_cast<Real>(mobility[n])));
+    alignas(64) Real lane_values[lanes];
+    (most + odd).store_aligned(lane_values);
     Real result = 0;
-    for (int lane = 0; lane < lanes; ++lane)
-      result = physics::larger_or_none(result, most[lane] + odd[lane]);
+    for (const Real value : lane_values)
+      result = physics::larger_or_none(result, value);
     return result;
   }
 

@@ -4,11 +4,13 @@
 #include "frontalis/physics/element/node_motion.hpp"
 #include "frontalis/physics/element/sliding_node.hpp"
 #include "frontalis/physics/ramp.hpp"
+#include "solver/cpu/prefetch.hpp"
 #include "solver/stepping/attached_blocks.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace frontalis
 {
@@ -203,59 +205,82 @@ template <class Real>
 void RestrictedNodes<Real>::renew(const WaitingBlock* waiting, std::int32_t count, Real* const u[3], Real* const v[3],
                                   const ConstraintStep& step)
 {
-  constexpr int width = PlaneBatch::width;
-  PlaneBatch batch{};
-  Renewal renewals[width];
+  Renewal renewals[PlaneBatch::width];
   int filled = 0;
-  const auto take_batch = [&]
-  {
-    for (int l = filled; l < width; ++l)
-      batch.first[l] = batch.first[0];
-    if (filled > 0)
-      kernels_.planes(batch);
-    for (int l = 0; l < filled; ++l)
-      if (batch.slope[l] > static_cast<float>(physics::least_gradient))
-        take(renewals[l],
-             { { double(batch.normal[0][l]), double(batch.normal[1][l]), double(batch.normal[2][l]) },
-               double(batch.distance[l]),
-               double(batch.slip[l]) },
-             u, v, step);
-    filled = 0;
-  };
   for (std::int32_t i = 0; i < count; ++i)
     for (std::uint32_t lanes = waiting[i].lanes; lanes != 0; lanes &= lanes - 1)
     {
       const int lane = __builtin_ctz(lanes);
-      const std::int32_t block = waiting[i].block, n = block_node_[block] + lane, index = block_sliding_[block][lane];
+      const std::int32_t block = waiting[i].block, index = block_sliding_[block][lane];
       // A node that does not slide waits if its displacement is infinite.
       if (index < 0)
         continue;
-      const Sliding& s = sliding_[index];
-      const Point at = s.rest + Point{ u[0][n], u[1][n], u[2][n] };
-      const Renewal renewal{ block, lane, s.bone < 0 ? at : pose_of(step.bone[s.bone]).inwards(at) };
-      const physics::DistanceField& field = *s.level.field;
-      if (kernels_.planes == nullptr || field.radius > 0)
-      {
-        if (physics::LevelPlane<double> plane{}; s.level.plane_at(renewal.place, plane))
-          take(renewal, plane, u, v, step);
-        continue;
-      }
-      auto point = physics::field_point(field, renewal.place);
-      const double inverse_spacing = 1 / field.spacing;
-      const Point place = physics::enter_cell(inverse_spacing, point.offset, point.cell);
-      batch.first[filled] = field.around(point.cell);
-      if (batch.first[filled] == nullptr)
-        continue;
-      batch.place[0][filled] = static_cast<float>(place.x);
-      batch.place[1][filled] = static_cast<float>(place.y);
-      batch.place[2][filled] = static_cast<float>(place.z);
-      batch.inverse_spacing[filled] = static_cast<float>(inverse_spacing);
-      batch.level[filled] = static_cast<float>(s.level.level);
-      renewals[filled++] = renewal;
-      if (filled == width)
-        take_batch();
+      prefetch(&sliding_[index]);
+      renewals[filled++] = { block, lane, index, {} };
+      if (filled == PlaneBatch::width)
+        renew_batch(renewals, std::exchange(filled, 0), u, v, step);
     }
-  take_batch();
+  renew_batch(renewals, filled, u, v, step);
+}
+
+// Each loop needs data that the loop before it has begun to fetch.
+template <class Real>
+void RestrictedNodes<Real>::renew_batch(Renewal* renewals, int count, Real* const u[3], Real* const v[3],
+                                        const ConstraintStep& step)
+{
+  constexpr int width = PlaneBatch::width;
+  PlaneBatch batch{};
+  std::int32_t cell[width][3];
+  int filled = 0;
+  for (int l = 0; l < count; ++l)
+  {
+    Renewal renewal = renewals[l];
+    const Sliding& s = sliding_[renewal.index];
+    const std::int32_t n = block_node_[renewal.block] + renewal.lane;
+    const Point at = s.rest + Point{ u[0][n], u[1][n], u[2][n] };
+    renewal.place = s.bone < 0 ? at : pose_of(step.bone[s.bone]).inwards(at);
+    const physics::DistanceField& field = *s.level.field;
+    if (kernels_.planes == nullptr || field.radius > 0)
+    {
+      if (physics::LevelPlane<double> plane{}; s.level.plane_at(renewal.place, plane))
+        take(renewal, plane, u, v, step);
+      continue;
+    }
+    auto point = physics::field_point(field, renewal.place);
+    const double inverse_spacing = 1 / field.spacing;
+    const Point place = physics::enter_cell(inverse_spacing, point.offset, point.cell);
+    std::copy(point.cell, point.cell + 3, cell[filled]);
+    batch.place[0][filled] = static_cast<float>(place.x);
+    batch.place[1][filled] = static_cast<float>(place.y);
+    batch.place[2][filled] = static_cast<float>(place.z);
+    batch.inverse_spacing[filled] = static_cast<float>(inverse_spacing);
+    batch.level[filled] = static_cast<float>(s.level.level);
+    renewals[filled++] = renewal;
+  }
+  const float* some = nullptr;
+  for (int l = 0; l < filled; ++l)
+  {
+    batch.first[l] = sliding_[renewals[l].index].level.field->around(cell[l]);
+    prefetch_samples(batch.first[l]);
+    some = batch.first[l] != nullptr ? batch.first[l] : some;
+  }
+  if (some == nullptr)
+    return;
+  // Lanes without samples take those of another, and the result is not used.
+  bool sampled[width] = {};
+  for (int l = 0; l < width; ++l)
+  {
+    sampled[l] = l < filled && batch.first[l] != nullptr;
+    batch.first[l] = sampled[l] ? batch.first[l] : some;
+  }
+  kernels_.planes(batch);
+  for (int l = 0; l < filled; ++l)
+    if (sampled[l] && batch.slope[l] > static_cast<float>(physics::least_gradient))
+      take(renewals[l],
+           { { double(batch.normal[0][l]), double(batch.normal[1][l]), double(batch.normal[2][l]) },
+             double(batch.distance[l]),
+             double(batch.slip[l]) },
+           u, v, step);
 }
 
 // Gives a node a new plane, and turns its velocity with the plane.
@@ -265,7 +290,7 @@ void RestrictedNodes<Real>::take(const Renewal& renewal, const physics::LevelPla
 {
   const int lane = renewal.lane;
   const std::int32_t n = block_node_[renewal.block] + lane;
-  const Sliding& s = sliding_[block_sliding_[renewal.block][lane]];
+  const Sliding& s = sliding_[renewal.index];
   Block& b = contacts_.blocks[renewal.block];
   const physics::Pose pose = s.bone < 0 ? physics::Pose() : pose_of(step.bone[s.bone]);
   Point surface_velocity{ 0, 0, 0 };

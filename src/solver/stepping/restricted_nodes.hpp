@@ -81,6 +81,7 @@ private:
   {
     std::int32_t block;
     int lane;
+    std::int32_t index;           ///< into sliding_
     physics::Vec3<double> place;  ///< in the surface's frame [m]
   };
   /// A rigid node on a bone.
@@ -103,6 +104,7 @@ private:
   void carry(Carrier& carrier, const Real* const u[3], const ConstraintStep& step);
   void renew(const WaitingBlock* waiting, std::int32_t count, Real* const u[3], Real* const v[3],
              const ConstraintStep& step);
+  void renew_batch(Renewal* renewals, int count, Real* const u[3], Real* const v[3], const ConstraintStep& step);
   void take(const Renewal& renewal, const physics::LevelPlane<double>& plane, Real* const u[3], Real* const v[3],
             const ConstraintStep& step);
 
