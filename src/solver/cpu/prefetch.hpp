@@ -7,14 +7,14 @@
 namespace frontalis
 {
 
-/// Fetches an object into the cache, if its address is valid.
-template <class Object>
+/// Fetches an object into the cache, if its address is valid. `to_write`: it will be written next.
+template <bool to_write = false, class Object>
 FRONTALIS_LAW void prefetch(const Object* object)
 {
   constexpr std::size_t line = 64;
   const char* const bytes = reinterpret_cast<const char*>(object);
   for (std::size_t at = 0; at < sizeof(Object); at += line)
-    __builtin_prefetch(bytes + at);
+    __builtin_prefetch(bytes + at, to_write ? 1 : 0);
 }
 
 /// Fetches the samples around a cell into the cache; `first` is what DistanceField::around() returned.
