@@ -257,22 +257,20 @@ void RestrictedNodes<Real>::renew_batch(Renewal* renewals, int count, Real* cons
     batch.level[filled] = static_cast<float>(s.level.level);
     renewals[filled++] = renewal;
   }
+  bool sampled[width] = {};
   const float* some = nullptr;
   for (int l = 0; l < filled; ++l)
   {
     batch.first[l] = sliding_[renewals[l].index].level.field->around(cell[l]);
     prefetch_samples(batch.first[l]);
-    some = batch.first[l] != nullptr ? batch.first[l] : some;
+    sampled[l] = batch.first[l] != nullptr;
+    some = sampled[l] ? batch.first[l] : some;
   }
   if (some == nullptr)
     return;
   // Lanes without samples take those of another, and the result is not used.
-  bool sampled[width] = {};
   for (int l = 0; l < width; ++l)
-  {
-    sampled[l] = l < filled && batch.first[l] != nullptr;
     batch.first[l] = sampled[l] ? batch.first[l] : some;
-  }
   kernels_.planes(batch);
   for (int l = 0; l < filled; ++l)
     if (sampled[l] && batch.slope[l] > static_cast<float>(physics::least_gradient))
@@ -371,11 +369,8 @@ void RestrictedNodes<Real>::follow_bones(std::int32_t first, std::int32_t last, 
   std::int32_t bone = -1;
   for (auto r = nodes.first; r != nodes.second; ++r)
   {
-    if (r->bone != bone)
-    {
-      bone = r->bone;
+    if (r->bone != std::exchange(bone, r->bone))
       pose = pose_of(step.bone[bone]);
-    }
     const Point moved = pose.outwards(r->rest) - r->rest;
     const double to[3] = { moved.x, moved.y, moved.z };
     for (int axis = 0; axis < 3; ++axis)
@@ -392,11 +387,9 @@ void RestrictedNodes<Real>::hold_still(std::int32_t first, std::int32_t last, Re
        run != still_.end() && run->node < last; ++run)
   {
     const std::int32_t begin = std::max(run->node, first), end = std::min(run->node + run->count, last);
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      std::fill(u[axis] + begin, u[axis] + end, Real(0));
-      std::fill(v[axis] + begin, v[axis] + end, Real(0));
-    }
+    for (Real* const* const field : { u, v })
+      for (int axis = 0; axis < 3; ++axis)
+        std::fill(field[axis] + begin, field[axis] + end, Real(0));
   }
 }
 
