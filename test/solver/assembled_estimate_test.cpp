@@ -96,8 +96,8 @@ TEST(AssembledEstimate, looks_ahead_while_activations_grow)
   search.renew(estimate, 0);
   search.renew(estimate, 0.3F);
   EXPECT_EQ(search.searches, 2) << "at once";
-  EXPECT_FLOAT_EQ(search.activation, 0.5F);
-  search.renew(estimate, 0.49F);
+  EXPECT_FLOAT_EQ(search.activation, 0.8F);
+  search.renew(estimate, 0.79F);
   search.renew(estimate, 0.1F);
   EXPECT_EQ(search.searches, 2);
   search.renew(estimate, 0.95F);
@@ -106,6 +106,19 @@ TEST(AssembledEstimate, looks_ahead_while_activations_grow)
   EXPECT_EQ(search.steps_until_next(estimate, 0.95F), 200) << "what muscles pull stiffens later";
   EXPECT_FLOAT_EQ(search.activation, 0.97F);
   EXPECT_DOUBLE_EQ(estimate.share(), 1.25 * 0.5);
+}
+
+TEST(AssembledEstimate, looks_as_far_ahead_as_before_when_tissue_has_stiffened)
+{
+  AssembledEstimate estimate;
+  Search search;
+  search.renew(estimate, 0);
+  search.renew(estimate, 0.3F);
+  EXPECT_EQ(search.steps_until_next(estimate, 0.4F, 1.2 * rest), 100);
+  EXPECT_EQ(search.searches, 3);
+  EXPECT_FLOAT_EQ(search.activation, 0.8F);
+  search.renew(estimate, 0.7F, 1.2 * rest);
+  EXPECT_EQ(search.searches, 3) << "the activations of the search before still cover these";
 }
 
 TEST(AssembledEstimate, is_found_often_while_bones_move)

@@ -182,7 +182,7 @@ void BodyContact<Real>::before_step(const NodeShare& share, const Real* const u[
 {
   const std::vector<BodyState> now = next(step);
   const double response = physics::friction_response(step.dt);
-  static_assert(chunk_size % PointBlock<Real>::width == 0, "a chunk is a whole number of blocks");
+  static_assert(chunk_size == PointBlock<Real>::width, "a chunk is a block");
   std::vector<PosedBody<Real>> bodies;
   for (std::size_t b = 0; b < now.size(); ++b)
     bodies.push_back(ContactBlocks<Real>::posed(now[b].pose, fields_[b]));
@@ -195,17 +195,26 @@ void BodyContact<Real>::before_step(const NodeShare& share, const Real* const u[
       continue;
     chunk = { std::numeric_limits<double>::max(), 0 };
     const std::size_t first = c * chunk_size, last = std::min(first + chunk_size, points_.size());
+    std::uint32_t wanted = 0;
+    for (std::size_t p = first; p < last; ++p)
+      if (!(due_[p] > now.front().way))
+        wanted |= 1U << (p - first);
     Real distance[chunk_size];
-    if (blocks_.present())
-      blocks_.find(first, last, u, bodies, distance);
+    if (blocks_.present() && wanted != 0)
+      blocks_.find(c, u, bodies, wanted, distance);
     for (std::size_t p = first; p < last; ++p)
     {
-      const BodyState& body = now[points_[p].body];
+      if ((wanted >> (p - first) & 1) == 0)
+      {
+        chunk.due = std::min(chunk.due, due_[p]);
+        continue;
+      }
       const double away = blocks_.present() ? double(distance[p - first]) - distance_error : 0;
-      if (away > 0 && touches_[p] == Touching::no && grips_[p].normal == 0)
-        due_[p] = body.way + away / physics::steepest_field;
-      else if (!(due_[p] > body.way))
-        find_force(p, u, body, response);
+      // A point that has touched has been due ever since.
+      if (away > 0 && due_[p] > 0)
+        due_[p] = now.front().way + away / physics::steepest_field;
+      else
+        find_force(p, u, now[points_[p].body], response);
       chunk.due = std::min(chunk.due, due_[p]);
       chunk.touches |= touches_[p] != Touching::no ? 1 : 0;
     }

@@ -90,7 +90,7 @@ private:
     double work, lost;
   };
   // Number of points that are skipped together.
-  static constexpr std::int32_t chunk_size = 64;
+  static constexpr std::int32_t chunk_size = 16;
   struct Chunk
   {
     double due = 0;            // value of BodyState::way at which the first of the chunk's points must be evaluated

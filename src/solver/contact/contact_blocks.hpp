@@ -60,13 +60,11 @@ public:
     return body;
   }
 
-  /// Finds the distances of the points from `first`, a multiple of Block::width, up to `last`. `distance` has room for
-  /// whole blocks.
-  void find(std::size_t first, std::size_t last, const Real* const u[3], const std::vector<PosedBody<Real>>& bodies,
+  /// Finds the distances of points of a block (PointKernel).
+  void find(std::size_t block, const Real* const u[3], const std::vector<PosedBody<Real>>& bodies, std::uint32_t wanted,
             Real* distance)
   {
-    for (std::size_t p = first; p < last; p += Block::width)
-      kernel_(blocks_[p / Block::width], u, bodies.data(), distance + (p - first));
+    kernel_(blocks_[block], u, bodies.data(), wanted, distance);
   }
 
   /// Finds the field of point p's body at x, in the frame of the body. Returns false where no samples are stored. The

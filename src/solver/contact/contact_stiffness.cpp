@@ -162,14 +162,15 @@ void ContactStiffness::add_forces(const Model& model, const std::vector<std::arr
       const auto& nodes = model.voxel_nodes[surface.binding->voxel[p]];
       double weight[8];
       physics::trilinear_weights<double>(at[0], at[1], at[2], weight);
-      for (std::size_t axis = 0; axis < 3; ++axis)
-      {
-        double moved = 0;
-        for (std::size_t b = 0; b < 8; ++b)
-          moved += weight[b] * displacements[nodes[b]][axis];
-        for (std::size_t b = 0; b < 8; ++b)
-          forces[nodes[b]][axis] += surface.moves * double(surface.points[p]) * weight[b] * moved;
-      }
+      double force[3] = {};
+      for (std::size_t b = 0; b < 8; ++b)
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          force[axis] += weight[b] * displacements[nodes[b]][axis];
+      for (double& f : force)
+        f *= surface.moves * double(surface.points[p]);
+      for (std::size_t b = 0; b < 8; ++b)
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          forces[nodes[b]][axis] += weight[b] * force[axis];
     }
 }
 

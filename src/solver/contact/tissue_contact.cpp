@@ -3,6 +3,7 @@
 #include "frontalis/physics/sliding.hpp"
 #include "solver/contact/body_motion.hpp"
 #include "solver/contact/contact_stiffness.hpp"
+#include "solver/cpu/prefetch.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -256,7 +257,12 @@ void TissueContact<Real>::add_up(const Arena& arena, const NodeShare& share, std
     std::copy(record, record + 4, to);
   };
   for (std::int32_t b = 0; b < arena.blocks; ++b)
-    for (int lane = 0; arena.touches[b] != 0 && lane < touch_width; ++lane)
+  {
+    if (arena.touches[b] == 0)
+      continue;
+    prefetch(arena.pair_vertices.data() + b + 1);
+    prefetch(arena.forces.data() + b + 1);
+    for (int lane = 0; lane < touch_width; ++lane)
     {
       const PairVertices& pairs = arena.pair_vertices[b];
       const PairForceBlock<Real>& force = arena.forces[b];
@@ -275,11 +281,15 @@ void TissueContact<Real>::add_up(const Arena& arena, const NodeShare& share, std
         summed[v / touch_width] = 1;
         return sums.data() + 8 * std::ptrdiff_t{ v };
       };
-      Real* const of_point = sum(0);
+      if (Real* const of_point = sum(0); of_point != nullptr)
+      {
+        const Real *const x = force.corner[0] + record, *const y = force.corner[1] + record,
+                          *const z = force.corner[2] + record;
+        const Real all[4] = { x[0] + y[0] + z[0], x[1] + y[1] + z[1], x[2] + y[2] + z[2], x[3] + y[3] + z[3] };
+        add(-1, all, of_point);
+      }
       for (int i = 0; i < 3; ++i)
       {
-        if (of_point != nullptr)
-          add(-1, force.corner[i] + record, of_point);
         Real* const of_corner = sum(i + 1);
         if (of_corner == nullptr)
           continue;
@@ -287,6 +297,7 @@ void TissueContact<Real>::add_up(const Arena& arena, const NodeShare& share, std
         add(1, force.turn[i] + record, of_corner + 4);
       }
     }
+  }
 }
 
 // Passes the sums of add_up() on to nodes: calls sink(node, force) for the nodes of the share on which they act.

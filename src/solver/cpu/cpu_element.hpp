@@ -4,6 +4,7 @@
 #include "frontalis/physics/element/relaxation.hpp"
 #include "frontalis/physics/element/voxel_forces.hpp"
 #include "solver/cpu/cpu_kernel.hpp"
+#include "solver/cpu/prefetch.hpp"
 #include "solver/cpu/simd_lanes.hpp"
 #include "solver/law_share.hpp"
 
@@ -79,6 +80,7 @@ struct CpuElement
     {
       for (auto s = tile->law_begin; s < tile->law_end; ++s)
       {
+        prefetch(g.laws + s + 1);
         const LawSlot& slot = g.laws[s];
         LawShare<Batch> law{ slot.law, load(slot.weight), load(slot.at_rest), load(slot.per_tangent), {} };
         for (int p = 0; p < 11; ++p)
@@ -97,22 +99,28 @@ struct CpuElement
       physics::gauss_forces(*this, mode, wanted, stiffness);
     }
 
-    FRONTALIS_LAW Fibre fibre(const FibreSlot& slot) const
+    FRONTALIS_LAW Fibre fibre(std::int32_t s) const
     {
+      const FibreSlot& slot = g.fibres[s];
+      const std::int32_t muscle = g.fibre_muscle[s];
       return { { load(slot.x), load(slot.y), load(slot.z) },
                load(slot.weight),
-               g.activation[slot.muscle],
-               g.with_length[slot.muscle],
-               g.with_passive[slot.muscle] != 0 };
+               g.activation[muscle],
+               g.with_length[muscle],
+               g.with_passive[muscle] != 0 };
     }
     template <class Visit>
     FRONTALIS_LAW void each_fibre(Visit&& visit) const
     {
+      // Slots are fetched early, because those of a model do not fit into the cache of a core.
+      constexpr int ahead = 2;
       for (auto s = tile->fibre_begin; s < tile->fibre_end; ++s)
       {
-        const std::int32_t muscle = g.fibres[s].muscle;
-        if (physics::has_stress(g.activation[muscle], g.with_passive[muscle] != 0))
-          visit(fibre(g.fibres[s]));
+        const std::int32_t muscle = g.fibre_muscle[s];
+        if (!physics::has_stress(g.activation[muscle], g.with_passive[muscle] != 0))
+          continue;
+        prefetch(g.fibres + s + ahead);
+        visit(fibre(s));
       }
     }
     FRONTALIS_LAW void add_fibres(const Kinematics& k, Stress& P) const
@@ -131,7 +139,7 @@ struct CpuElement
     {
       for (auto s = tile->fibre_begin; s < tile->fibre_end; ++s)
       {
-        const auto now = physics::fibre_state(fibre(g.fibres[s]), k);
+        const auto now = physics::fibre_state(fibre(s), k);
         FibreMemory& memory = g.fibre_memory[s];
         alignas(64) float stress[lanes], squared[lanes];
         Lane::store(now.stress, stress);
@@ -199,7 +207,10 @@ struct CpuElement
     for (auto t = g.plane_tiles[plane]; t < g.plane_tiles[plane + 1]; ++t)
       for (int offset = 0; offset < Tile::width; offset += lanes)
         if (offset % Tile::strip < g.tiles[t].count[offset / Tile::strip])
+        {
+          prefetch(g.stiffness + t + 1);
           visit(Batches{ g, g.tiles + t, t, offset, owned, with_bound, work });
+        }
   }
 
   /// Loads the displacements of the corners and transforms them to modes.
@@ -275,21 +286,13 @@ struct CpuElement
       physics::to_tissue_centre(at.centre(), mode[c]);
     const Stress P = physics::element_stress(at, mode, at.with_bound, stiffness);
     const Batch hourglass = at.hourglass();
-    const int strip = at.offset / Tile::strip, within = at.offset % Tile::strip;
-    const auto row_of = [&](int component, int r)
-    { return (r < 2 ? below : above) + component * g.buffer_stride - base[r / 2]; };
     if (at.with_bound)
-      for (int r = 0; r < 4; ++r)
-      {
-        Real* const to = row_of(3, r);
-        Batch low = stiffness, high = stiffness;
-        if (Cut)
-        {
-          low = low * at.load(g.cut[at.tile->cut].corner[2 * r]);
-          high = high * at.load(g.cut[at.tile->cut].corner[2 * r + 1]);
-        }
-        Lane::add(to + at.tile->node[strip][r] + within, to + at.tile->node[Tile::strips - 1][r], low, high);
-      }
+    {
+      Batch bound[1][8];
+      for (int corner = 0; corner < 8; ++corner)
+        bound[0][corner] = Cut ? stiffness * at.load(g.cut[at.tile->cut].corner[corner]) : stiffness;
+      add_corners<1>(at, 3, bound, below, above, base);
+    }
     for (int c = 0; c < 3; ++c)
     {
       // The components are processed one by one, so that each stays in registers.
@@ -299,13 +302,40 @@ struct CpuElement
       if (Cut)
         physics::from_tissue_centre(at.centre(), mode[c]);
       physics::walsh_hadamard_transposed(mode[c]);
-      for (int r = 0; r < 4; ++r)
-      {
-        Real* const to = row_of(c, r);
-        Lane::add(to + at.tile->node[strip][r] + within, to + at.tile->node[Tile::strips - 1][r], mode[c][2 * r],
-                  mode[c][2 * r + 1]);
-      }
     }
+    add_corners<3>(at, 0, mode, below, above, base);
+  }
+
+  /// Adds components of the values at the corners of the voxels to the plane buffers, from `component` on.
+  template <int components>
+  static FRONTALIS_LAW void add_corners(const Voxels& at, int component, const Batch (&value)[components][8],
+                                        Real* below, Real* above, const std::int32_t* base)
+  {
+    const Tile& tile = *at.tile;
+    const int strip = at.offset / Tile::strip, within = at.offset % Tile::strip;
+    const auto row_of = [&](int c, int r, int s)
+    { return (r < 2 ? below : above) + (component + c) * at.g.buffer_stride - base[r / 2] + tile.node[s][r]; };
+    bool joined = true;
+    for (int r = 0; r < 4; ++r)
+      joined &= tile.node[1][r] == tile.node[0][r] + Tile::strip;
+    if (Lane::two_strips && !joined)
+    {
+      // The strips may add to the same nodes, most often as neighbours along y, of which one has rows 1 and 3 where the
+      // other has 0 and 2. A load waits until an overlapping store is in the cache. Therefore many others are between.
+      FRONTALIS_UNROLL
+      for (int i = 0; i < 4; ++i)
+        for (int c = 0, r = 1 - i / 2 + 2 * (i % 2); c < components; ++c)
+          Lane::template add_strip<0>(row_of(c, r, 0), value[c][2 * r], value[c][2 * r + 1]);
+      FRONTALIS_UNROLL
+      for (int i = 0; i < 4; ++i)
+        for (int c = 0, r = 1 - i / 2 + 2 * (i % 2); c < components; ++c)
+          Lane::template add_strip<1>(row_of(c, r, 1), value[c][2 * r], value[c][2 * r + 1]);
+      return;
+    }
+    FRONTALIS_UNROLL
+    for (int i = 0; i < 4; ++i)
+      for (int c = 0, r = i / 2 + 2 * (i % 2); c < components; ++c)
+        Lane::add(row_of(c, r, strip) + within, value[c][2 * r], value[c][2 * r + 1]);
   }
   // This function is not inlined, so that the compiler generates the same code for whole voxels as without it.
   template <Stabilisation Form>

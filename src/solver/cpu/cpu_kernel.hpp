@@ -34,6 +34,7 @@ struct CpuKernelArguments : physics::Kick<Real>
   const TileStabilisation* stabilisation;  ///< null: scalar hourglass control
   bool selective_reduced;                  ///< eight Gauss points instead of hourglass control
   const FibreSlot* fibres;                 ///< null: the effect is switched off
+  const std::int32_t* fibre_muscle;        ///< muscle of each FibreSlot
   const LawSlot* laws;
   const ViscousSlot* viscous;
   const CutSlot* cut;

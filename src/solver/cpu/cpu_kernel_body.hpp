@@ -41,23 +41,24 @@ struct CpuKernelBody
   {
     const std::int32_t first = g.plane_nodes[plane], count = g.plane_nodes[plane + 1] - first;
     const float* const mobility = g.mobility + first;
-    // Each lane has a maximum of its own, so that the loop is vectorised. `odd` becomes NaN if a stiffness is NaN.
-    Real most[lanes] = {}, odd[lanes] = {};
-    const auto take = [&](std::int32_t n, int lane)
+    using N = typename Element::N;
+    // Maxima ignore NaN. `odd` becomes NaN if a stiffness is NaN.
+    Batch most(Real(0)), odd(Real(0));
+    const auto take = [&](const Batch& squared)
     {
-      const Real squared = stiffness[n] * static_cast<Real>(mobility[n]);
-      most[lane] = squared > most[lane] ? squared : most[lane];
-      odd[lane] += squared - squared;
+      most = N::max(most, squared);
+      odd = odd + (squared - squared);
     };
     std::int32_t n = 0;
     for (; n + lanes <= count; n += lanes)
-      for (int lane = 0; lane < lanes; ++lane)
-        take(n + lane, lane);
+      take(Element::Lane::load(stiffness + n) * Element::Lane::load(mobility + n));
     for (; n < count; ++n)
-      take(n, 0);
+      take(Batch(stiffness[n] * static_cast<Real>(mobility[n])));
+    alignas(64) Real lane_values[lanes];
+    (most + odd).store_aligned(lane_values);
     Real result = 0;
-    for (int lane = 0; lane < lanes; ++lane)
-      result = physics::larger_or_none(result, most[lane] + odd[lane]);
+    for (const Real value : lane_values)
+      result = physics::larger_or_none(result, value);
     return result;
   }
 
@@ -104,13 +105,18 @@ struct CpuKernelBody
     Real* below = buffer;
     Real* above = buffer + 4 * static_cast<std::size_t>(g.buffer_stride);
     const bool with_bound = task == KernelTask::step_and_bound;
-    const std::int32_t used = (with_bound ? 4 : 3) * g.buffer_stride;
-    clear(below, used);
+    const auto clear_plane = [&](Real* plane, std::int32_t k)
+    {
+      const std::int32_t count = k < 0 ? 0 : g.plane_nodes[k + 1] - g.plane_nodes[k] + 2 * Tile::width;
+      for (int c = 0; c < (with_bound ? 4 : 3); ++c)
+        clear(plane + c * g.buffer_stride, count);
+    };
+    clear_plane(below, first - 1);
     Real frequency_squared = 0;
     // Voxel plane k lies between node planes k and k + 1. The lowest voxel plane is computed for its upper nodes only.
     for (std::int32_t k = first - 1; k < last; ++k)
     {
-      clear(above, used);
+      clear_plane(above, k + 1 < g.planes ? k + 1 : -1);
       if (k >= 0 && k < g.planes - 1)
         plane_forces<Form>(g, k, below, above, k >= first, with_bound);
       if (k >= first)

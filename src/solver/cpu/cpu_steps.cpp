@@ -40,6 +40,7 @@ CpuKernelArguments<Real> CpuSolver<Real>::arguments(double dt, const float* acti
   g.planes = rows_.planes;
   g.selective_reduced = discretisation_.selective_reduced;
   g.fibres = runs(Effect::contraction) || runs(Effect::fibre_stiffness) ? rows_.fibres.data() : nullptr;
+  g.fibre_muscle = rows_.fibre_muscle.data();
   g.laws = rows_.laws.data();
   g.viscous = rows_.viscous.data();
   g.cut = rows_.cut.data();

@@ -33,10 +33,11 @@ struct PosedBody
   const physics::DistanceField* field;
 };
 
-/// Finds the distances [m] of the points of a block from their bodies at the displacements u of nodes. Distances are
-/// negative where no samples are stored, and from spheres.
+/// Finds the distances [m] of points of a block from their bodies at the displacements u of nodes. Distances are
+/// negative where no samples are stored, and from spheres. Those of lanes whose bit is not set in `wanted` are
+/// meaningless.
 template <class Real>
 using PointKernel = void (*)(PointBlock<Real>& block, const Real* const u[3], const PosedBody<Real>* bodies,
-                             Real* distance);
+                             std::uint32_t wanted, Real* distance);
 
 }  // namespace frontalis

@@ -3,8 +3,10 @@
 #include "frontalis/physics/trilinear.hpp"
 #include "solver/cpu/record_lanes.hpp"
 #include "solver/cpu/point_kernel.hpp"
+#include "solver/cpu/prefetch.hpp"
 
 #include <cmath>
+#include <utility>
 
 namespace frontalis
 {
@@ -47,46 +49,62 @@ struct PointKernelBody
     return { along(0), along(1), along(2) };
   }
 
-  // Copies the samples of a cell into the block.
-  static void enter(Block& b, int lane, const Body& body, const float (&cell)[3])
+  // The samples of a batch of points, in the form that physics::spline() reads. There is no loop, because the compiler
+  // would make it a copy through memory.
+  struct Samples
   {
-    std::int32_t whole[3];
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      b.cell[axis][lane] = cell[axis];
-      whole[axis] = std::abs(cell[axis]) < 1e9f ? static_cast<std::int32_t>(cell[axis]) : -1000000000;
-    }
-    const float* const first = body.field->radius > 0 ? nullptr : body.field->around(whole);
-    for (int n = 0; n < 27; ++n)
-      b.samples[n][lane] = first == nullptr ? Block::none : physics::gather_one(first, n);
+    Batch value[27];
+  };
+  template <std::size_t... n>
+  static FRONTALIS_LAW Samples samples_at(const float* first, std::index_sequence<n...>)
+  {
+    return { { Lanes::load(first + n * Block::width)... } };
   }
 
-  static FRONTALIS_LAW Batch distance(Block& b, int lane, const Vector& x, const Body* bodies)
+  // Copies the samples of the cells that the points of `lanes` have entered into the block.
+  static void enter(Block& b, int lane, std::uint32_t lanes, const Body* bodies, const Vector& cell)
+  {
+    alignas(64) float at[3][Lanes::count];
+    Lanes::store(cell.x, at[0]);
+    Lanes::store(cell.y, at[1]);
+    Lanes::store(cell.z, at[2]);
+    const float* first[Lanes::count];
+    for (auto rest = lanes; rest != 0; rest &= rest - 1)
+    {
+      const int l = __builtin_ctz(rest);
+      std::int32_t whole[3];
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        b.cell[axis][lane + l] = at[axis][l];
+        whole[axis] = std::abs(at[axis][l]) < 1e9f ? static_cast<std::int32_t>(at[axis][l]) : -1000000000;
+      }
+      const physics::DistanceField& field = *bodies[static_cast<int>(b.body[lane + l])].field;
+      first[l] = field.radius > 0 ? nullptr : field.around(whole);
+      prefetch_samples(first[l]);
+    }
+    for (auto rest = lanes; rest != 0; rest &= rest - 1)
+    {
+      const int l = __builtin_ctz(rest);
+      for (int n = 0; n < 27; ++n)
+        b.samples[n][lane + l] = first[l] == nullptr ? Block::none : physics::gather_one(first[l], n);
+    }
+  }
+
+  static FRONTALIS_LAW Batch distance(Block& b, int lane, const Vector& x, std::uint32_t wanted, const Body* bodies)
   {
     const Batch half(0.5f);
     const Vector cell{ xsimd::floor(x.x + half), xsimd::floor(x.y + half), xsimd::floor(x.z + half) };
     const auto kept = cell.x == Lanes::load(b.cell[0] + lane) && cell.y == Lanes::load(b.cell[1] + lane) &&
                       cell.z == Lanes::load(b.cell[2] + lane);
     if (!xsimd::all(kept))
-    {
-      alignas(64) float at[3][Lanes::count];
-      Lanes::store(cell.x, at[0]);
-      Lanes::store(cell.y, at[1]);
-      Lanes::store(cell.z, at[2]);
-      for (int l = 0; l < Lanes::count; ++l)
-        if (at[0][l] != b.cell[0][lane + l] || at[1][l] != b.cell[1][lane + l] || at[2][l] != b.cell[2][lane + l])
-          enter(b, lane + l, bodies[static_cast<int>(b.body[lane + l])], { at[0][l], at[1][l], at[2][l] });
-    }
-    struct
-    {
-      Batch value[27];
-    } samples;
-    for (int n = 0; n < 27; ++n)
-      samples.value[n] = Lanes::load(b.samples[n] + lane);
-    return physics::spline(samples, Batch(1.0f), x - cell).value;
+      if (const auto entered = Lanes::positive(xsimd::select(kept, Batch(0.0f), Batch(1.0f))) & wanted >> lane;
+          entered != 0)
+        enter(b, lane, entered, bodies, cell);
+    return physics::spline(samples_at(b.samples[0] + lane, std::make_index_sequence<27>()), Batch(1.0f), x - cell)
+        .value;
   }
 
-  static void run(Block& b, const float* const u[3], const Body* bodies, float* result)
+  static void run(Block& b, const float* const u[3], const Body* bodies, std::uint32_t wanted, float* result)
   {
     for (int lane = 0; lane < Block::width; lane += Lanes::count)
     {
@@ -98,7 +116,7 @@ struct PointKernelBody
         const Vector other = inwards(bodies[body], p);
         x = { xsimd::select(same, other.x, x.x), xsimd::select(same, other.y, x.y), xsimd::select(same, other.z, x.z) };
       }
-      Lanes::store(distance(b, lane, x, bodies), result + lane);
+      Lanes::store(distance(b, lane, x, wanted, bodies), result + lane);
     }
   }
 };

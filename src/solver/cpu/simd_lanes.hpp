@@ -56,48 +56,57 @@ struct SimdLanes
     return load(first);
   }
 
+  /// Whether a batch can be two strips.
+  static constexpr bool two_strips = count == 2 * Strip;
+
   /// Adds forces to the nodes of a row: `low` to the lower nodes of the voxels, `high` to the next nodes. Neighbouring
   /// voxels share nodes, so that both are first added in registers: a load that overlaps a recent store would stall.
-  static FRONTALIS_LAW void add(Real* first, [[maybe_unused]] Real* second, const Batch& low, const Batch& high)
+  static FRONTALIS_LAW void add(Real* first, const Batch& low, const Batch& high)
   {
     alignas(64) Real last[count];
     high.store_aligned(last);
-#if defined(__AVX512F__)
-    if constexpr (count == 2 * Strip)
-    {
-      if (second == first + Strip)
-      {
-        const __m512i next = _mm512_set_epi32(14, 13, 12, 11, 10, 9, 8, 7, 6, 5, 4, 3, 2, 1, 0, 0);
-        const __m512 sum = _mm512_add_ps(low, _mm512_maskz_permutexvar_ps(0xfffe, next, high));
-        _mm512_storeu_ps(first, _mm512_add_ps(_mm512_loadu_ps(first), sum));
-        first[count] += last[count - 1];
-        return;
-      }
-      const __m512i next = _mm512_set_epi32(14, 13, 12, 11, 10, 9, 8, 8, 6, 5, 4, 3, 2, 1, 0, 0);
-      const __m512 sum = _mm512_add_ps(low, _mm512_maskz_permutexvar_ps(0xfefe, next, high));
-      // The strips are added one after the other, because they may share nodes.
-      _mm256_storeu_ps(first, _mm256_add_ps(_mm256_loadu_ps(first), _mm512_castps512_ps256(sum)));
-      first[Strip] += last[Strip - 1];
-      _mm256_storeu_ps(second, _mm256_add_ps(_mm256_loadu_ps(second), _mm512_extractf32x8_ps(sum, 1)));
-      second[Strip] += last[count - 1];
-      return;
-    }
-#endif
     (load(first) + (low + moved_up(high))).store_unaligned(first);
     first[count] += last[count - 1];
   }
 
+  /// Like add(), for one of the two strips of a batch.
+  template <int strip>
+  static FRONTALIS_LAW void add_strip([[maybe_unused]] Real* first, [[maybe_unused]] const Batch& low,
+                                      [[maybe_unused]] const Batch& high)
+  {
+#if defined(__AVX512F__)
+    if constexpr (two_strips)
+    {
+      const __m256 upper = _mm512_extractf32x8_ps(high, strip);
+      const __m256 sum = _mm256_add_ps(_mm512_extractf32x8_ps(low, strip), moved_up(upper));
+      alignas(32) Real last[Strip];
+      _mm256_store_ps(last, upper);
+      _mm256_storeu_ps(first, _mm256_add_ps(_mm256_loadu_ps(first), sum));
+      first[Strip] += last[Strip - 1];
+    }
+#endif
+  }
+
 private:
+#if defined(__AVX2__)
+  static FRONTALIS_LAW __m256 moved_up(__m256 x)
+  {
+    const __m256i next = _mm256_set_epi32(6, 5, 4, 3, 2, 1, 0, 0);
+    return _mm256_blend_ps(_mm256_permutevar8x32_ps(x, next), _mm256_setzero_ps(), 1);
+  }
+#endif
   /// Moves each lane's number to the next lane; the first becomes 0.
   static FRONTALIS_LAW Batch moved_up(const Batch& x)
   {
 #if defined(__AVX512F__)
-    if constexpr (std::is_same<Real, double>::value && count == 8)
+    if constexpr (std::is_same<Real, float>::value && count == 16)
+      return _mm512_maskz_permutexvar_ps(0xfffe, _mm512_set_epi32(14, 13, 12, 11, 10, 9, 8, 7, 6, 5, 4, 3, 2, 1, 0, 0),
+                                         x);
+    else if constexpr (std::is_same<Real, double>::value && count == 8)
       return _mm512_maskz_permutexvar_pd(0xfe, _mm512_set_epi64(6, 5, 4, 3, 2, 1, 0, 0), x);
 #elif defined(__AVX2__)
     if constexpr (std::is_same<Real, float>::value && count == 8)
-      return _mm256_blend_ps(_mm256_permutevar8x32_ps(x, _mm256_set_epi32(6, 5, 4, 3, 2, 1, 0, 0)), _mm256_setzero_ps(),
-                             1);
+      return moved_up(__m256(x));
     else if constexpr (std::is_same<Real, double>::value && count == 4)
       return _mm256_blend_pd(_mm256_permute4x64_pd(x, 0x90), _mm256_setzero_pd(), 1);
 #elif defined(__SSE2__)

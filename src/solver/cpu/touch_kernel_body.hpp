@@ -2,6 +2,7 @@
 
 #include "frontalis/physics/surface_touch.hpp"
 #include "frontalis/physics/surface_vertex.hpp"
+#include "solver/cpu/prefetch.hpp"
 #include "solver/cpu/touch_kernel.hpp"
 
 namespace frontalis
@@ -218,6 +219,10 @@ struct TouchKernelBody
     {
       if (g.due[block] > g.way)
         continue;
+      // Meanwhile voxels have displaced the blocks from the cache of a core.
+      prefetch(g.pair_vertices + block + 1);
+      prefetch(g.pairs + block + 1);
+      prefetch<true>(g.forces + block + 1);
       Batch all = Number::of(1e30);
       std::uint32_t touches = 0;
       for (int lane = 0; lane < touch_width; lane += Lanes::count)

@@ -10,13 +10,13 @@ namespace
 using TileVoxels = std::array<VoxelProperties, Tile::width>;
 
 // Adds the fibres of a tile: one slot per muscle, in ascending order of muscles.
-void add_fibres(const Model& model, const TileVoxels& voxels, Tile& tile, std::vector<FibreSlot>& slots)
+void add_fibres(const Model& model, const TileVoxels& voxels, Tile& tile, std::vector<FibreSlot>& slots,
+                std::vector<std::int32_t>& muscles)
 {
   tile.fibre_begin = static_cast<std::int32_t>(slots.size());
   for (std::int16_t m = 0; m < static_cast<std::int16_t>(model.muscles.size()); ++m)
   {
     FibreSlot slot{};
-    slot.muscle = m;
     bool any = false;
     for (int lane = 0; lane < Tile::width; ++lane)
     {
@@ -35,7 +35,10 @@ void add_fibres(const Model& model, const TileVoxels& voxels, Tile& tile, std::v
         }
     }
     if (any)
+    {
       slots.push_back(slot);
+      muscles.push_back(m);
+    }
   }
   tile.fibre_end = static_cast<std::int32_t>(slots.size());
 }
@@ -184,7 +187,7 @@ VoxelRows::VoxelRows(const Model& model, const Discretisation& discretisation)
       if (tile.voxel(lane) >= 0)
         discretisation.voxel(tile.voxel(lane), voxels[lane]);
     }
-    add_fibres(model, voxels, tile, fibres);
+    add_fibres(model, voxels, tile, fibres, fibre_muscle);
     add_laws(voxels, tile, laws);
     add_viscosity(voxels, tile, viscous);
     add_cut(discretisation, voxels, tile, cut);
@@ -200,6 +203,7 @@ VoxelRows::VoxelRows(const Model& model, const Discretisation& discretisation)
   stiffness.shrink_to_fit();
   stabilisation.shrink_to_fit();
   fibres.shrink_to_fit();
+  fibre_muscle.shrink_to_fit();
   laws.shrink_to_fit();
   viscous.shrink_to_fit();
   cut.shrink_to_fit();
@@ -226,6 +230,7 @@ void VoxelRows::list_arrays(Effect of_fibres, ArrayList& list) const
   list.add("hourglass stiffness", stabilisation);
   list.add("laws", laws);
   list.add(of_fibres, "fibres", fibres);
+  list.add(of_fibres, "fibres", fibre_muscle);
   list.add(Effect::viscosity, "Prony terms", viscous);
   list.add(Effect::cut_voxels, "centroids of tissue", cut);
 }

@@ -33,7 +33,7 @@ struct Tile
 };
 
 /// Elasticity of a tile's voxels; 0 in unused lanes.
-struct TileStiffness
+struct alignas(64) TileStiffness
 {
   float mu[Tile::width];         ///< shear modulus times tissue volume [N m]
   float kappa[Tile::width];      ///< bulk modulus times tissue volume [N m]
@@ -42,29 +42,28 @@ struct TileStiffness
 };
 
 /// Assumed-strain hourglass control of a tile's voxels [N m].
-struct TileStabilisation
+struct alignas(64) TileStabilisation
 {
   float bending[Tile::width], coupling[Tile::width], torsion[Tile::width], warping[Tile::width];
 };
 
 /// The fibres of one muscle in a tile. Lanes of voxels without them have the weight 0.
-struct FibreSlot
+struct alignas(64) FibreSlot
 {
   /// fraction of the voxel that is this muscle, times tissue volume and stress reference [N m]
   float weight[Tile::width];
   float x[Tile::width], y[Tile::width], z[Tile::width];
-  std::int32_t muscle;
 };
 
 /// A law other than neo-Hookean in a tile. Lanes of voxels without it have the weight 0.
-struct LawSlot
+struct alignas(64) LawSlot
 {
-  Law law;
-  std::int32_t material;           ///< LawPart::material
   float weight[Tile::width];       ///< fraction of the voxel's tissue, times tissue volume [m3]
   float per_tangent[Tile::width];  ///< LawPart::per_tangent [m]
   float at_rest[Tile::width];      ///< tangent stiffness at rest [Pa]
   float parameters[physics::parameter_slots][Tile::width];  ///< ordered as in physics/materials/description.hpp
+  Law law;
+  std::int32_t material;  ///< LawPart::material
 };
 
 /// Prony terms of a tile's voxels.
@@ -98,6 +97,7 @@ struct VoxelRows
   std::vector<TileStiffness> stiffness;   ///< one per tile
   std::vector<TileStabilisation> stabilisation;  ///< one per tile; empty without assumed-strain hourglass control
   std::vector<FibreSlot> fibres;
+  std::vector<std::int32_t> fibre_muscle;  ///< muscle of each FibreSlot
   std::vector<LawSlot> laws;
   std::vector<ViscousSlot> viscous;
   std::vector<CutSlot> cut;

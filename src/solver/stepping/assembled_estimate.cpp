@@ -17,7 +17,7 @@ constexpr double margin_in_motion = 1.25;
 constexpr std::int64_t shortest_valid = 200, longest_valid = 2000;
 // The ratio is found for activations that are higher by this much than the present ones, so that searches are few while
 // activations grow.
-constexpr float activation_ahead = 0.2F;
+constexpr float activation_ahead = 0.5F;
 constexpr float activation_tolerance = 0.02F;  // replaces `activation_ahead` where activations rest
 // If the bound at nodes grows by this factor, the estimate has grown with it, perhaps without need.
 constexpr double growth_allowed = 1.1;
@@ -41,8 +41,9 @@ void AssembledEstimate::renew(const std::vector<float>& activation, bool moving,
   const bool grown = bound > growth_allowed * bound_ && steps_ >= steps_until_growth_counts;
   if (bound_ > 0 && !activated && !grown && steps_ < steps_valid_)
     return;
+  // A search after growth keeps the activations, because they may be on their way to those.
   const float ahead = activated ? activation_ahead : activation_tolerance;
-  for (std::size_t m = 0; m < activation.size(); ++m)
+  for (std::size_t m = 0; m < activation.size() && (activated || !grown); ++m)
     activation_[m] = activation[m] > 0 ? std::min(1.0F, activation[m] + ahead) : 0;
   const double found = search(activation_);
   if (bound_ == 0 || activated || moving)

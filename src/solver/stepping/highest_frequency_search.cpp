@@ -22,15 +22,21 @@ struct LanczosVector
   NodalVectors value;
   double squared_length = 0, largest = 0;
 
-  void measure(const std::vector<double>& root)
+  /// Subtracts `share` of another vector.
+  void subtract(double share, const NodalVectors& other, const std::vector<double>& root)
   {
-    squared_length = largest = 0;
+    // Each axis has a sum of its own, so that additions need not wait for each other.
+    double sum[3] = {}, most[3] = {};
     for (std::size_t n = 0; n < root.size(); ++n)
-      for (const double x : value[n])
+      for (std::size_t axis = 0; axis < 3; ++axis)
       {
-        squared_length += x * x;
-        largest = std::max(largest, std::abs(x) * root[n]);
+        const double x = value[n][axis] - share * other[n][axis];
+        value[n][axis] = x;
+        sum[axis] += x * x;
+        most[axis] = std::max(most[axis], std::abs(x) * root[n]);
       }
+    squared_length = sum[0] + sum[1] + sum[2];
+    largest = std::max({ most[0], most[1], most[2] });
   }
 };
 
@@ -120,7 +126,7 @@ double highest_frequency_squared(const Model& model, const Discretisation& discr
   for (std::size_t n = 0; n < root.size(); ++n)
     if (root[n] == 0)
       now.value[n] = {};
-  now.measure(root);
+  now.subtract(0, now.value, root);
   double length_before = 1;
   LanczosMatrix matrix;
   for (int iteration = 0; iteration < most_lanczos_iterations && !matrix.settled() && now.largest > 0; ++iteration)
@@ -137,19 +143,17 @@ double highest_frequency_squared(const Model& model, const Discretisation& discr
       for (std::size_t axis = 0; axis < 3; ++axis)
         forces[node.master][axis] += node.ratio * (forces[node.node][axis] - present[node.node][axis]);
     // image of `now` at unit length, without its part along the vector before
-    double along = 0;
-    const double back = iteration == 0 ? 0 : length / length_before;
+    double parts[3] = {};
+    const double back = iteration == 0 ? 0 : length / length_before, to_unit_length = 1 / (scale * length);
     for (std::size_t n = 0; n < root.size(); ++n)
       for (int axis = 0; axis < 3; ++axis)
       {
-        double& x = before.value[n][axis];
-        x = root[n] / (scale * length) * (forces[n][axis] - present[n][axis]) - back * x;
-        along += x * now.value[n][axis];
+        const double x = to_unit_length * root[n] * (forces[n][axis] - present[n][axis]) - back * before.value[n][axis];
+        before.value[n][axis] = x;
+        parts[axis] += x * now.value[n][axis];
       }
-    for (std::size_t n = 0; n < root.size(); ++n)
-      for (int axis = 0; axis < 3; ++axis)
-        before.value[n][axis] -= along / now.squared_length * now.value[n][axis];
-    before.measure(root);
+    const double along = parts[0] + parts[1] + parts[2];
+    before.subtract(along / now.squared_length, now.value, root);
     matrix.add_row(along / length, std::sqrt(before.squared_length));
     length_before = length;
     std::swap(now, before);

@@ -4,11 +4,13 @@
 #include "frontalis/physics/element/node_motion.hpp"
 #include "frontalis/physics/element/sliding_node.hpp"
 #include "frontalis/physics/ramp.hpp"
+#include "solver/cpu/prefetch.hpp"
 #include "solver/stepping/attached_blocks.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace frontalis
 {
@@ -53,14 +55,20 @@ void set(SlidingBlock<Real>& block, int lane, const Point& normal, double offset
 
 template <class Real>
 RestrictedNodes<Real>::RestrictedNodes(const Model& model, const SlideKernels<Real>& kernels)
-    : model_(model), kernels_(kernels), rigid_(model.rigid), prescribed_(model.prescribed)
+    : model_(model), kernels_(kernels), prescribed_(model.prescribed)
 {
   for (const auto& surface : model.constraint_surfaces)
     fields_.push_back(view(surface.field));
-  sort_by_node(rigid_);
+  auto rigid = model.rigid;
+  sort_by_node(rigid);
   sort_by_node(prescribed_);
-  for (const RigidNode& node : rigid_)
-    rigid_rest_.push_back(rest_point(model, node.node));
+  for (const RigidNode& node : rigid)
+    if (node.bone >= 0)
+      rigid_.push_back({ node.node, node.bone, rest_point(model, node.node) });
+    else if (!still_.empty() && still_.back().node + still_.back().count == node.node)
+      ++still_.back().count;
+    else
+      still_.push_back({ node.node, 1 });
   auto sliding = model.sliding;
   sort_by_node(sliding);
   // Replacing a plane that was kept for several steps jolts the tissue. If any surface has friction, no node keeps its
@@ -137,7 +145,7 @@ template <class Real>
 void RestrictedNodes<Real>::list_arrays(ArrayList& list)
 {
   list.add(Effect::rigid_nodes, "rigid nodes", rigid_);
-  list.add(Effect::rigid_nodes, "rigid nodes", rigid_rest_);
+  list.add(Effect::rigid_nodes, "rigid nodes", still_);
   list.add(Effect::prescribed_displacement, "prescribed nodes", prescribed_);
   gliding_.list_arrays(list);
   list.add(Effect::sliding, "nodes that slide", sliding_);
@@ -197,59 +205,80 @@ template <class Real>
 void RestrictedNodes<Real>::renew(const WaitingBlock* waiting, std::int32_t count, Real* const u[3], Real* const v[3],
                                   const ConstraintStep& step)
 {
-  constexpr int width = PlaneBatch::width;
-  PlaneBatch batch{};
-  Renewal renewals[width];
+  Renewal renewals[PlaneBatch::width];
   int filled = 0;
-  const auto take_batch = [&]
-  {
-    for (int l = filled; l < width; ++l)
-      batch.first[l] = batch.first[0];
-    if (filled > 0)
-      kernels_.planes(batch);
-    for (int l = 0; l < filled; ++l)
-      if (batch.slope[l] > static_cast<float>(physics::least_gradient))
-        take(renewals[l],
-             { { double(batch.normal[0][l]), double(batch.normal[1][l]), double(batch.normal[2][l]) },
-               double(batch.distance[l]),
-               double(batch.slip[l]) },
-             u, v, step);
-    filled = 0;
-  };
   for (std::int32_t i = 0; i < count; ++i)
     for (std::uint32_t lanes = waiting[i].lanes; lanes != 0; lanes &= lanes - 1)
     {
       const int lane = __builtin_ctz(lanes);
-      const std::int32_t block = waiting[i].block, n = block_node_[block] + lane, index = block_sliding_[block][lane];
+      const std::int32_t block = waiting[i].block, index = block_sliding_[block][lane];
       // A node that does not slide waits if its displacement is infinite.
       if (index < 0)
         continue;
-      const Sliding& s = sliding_[index];
-      const Point at = s.rest + Point{ u[0][n], u[1][n], u[2][n] };
-      const Renewal renewal{ block, lane, s.bone < 0 ? at : pose_of(step.bone[s.bone]).inwards(at) };
-      const physics::DistanceField& field = *s.level.field;
-      if (kernels_.planes == nullptr || field.radius > 0)
-      {
-        if (physics::LevelPlane<double> plane{}; s.level.plane_at(renewal.place, plane))
-          take(renewal, plane, u, v, step);
-        continue;
-      }
-      auto point = physics::field_point(field, renewal.place);
-      const double inverse_spacing = 1 / field.spacing;
-      const Point place = physics::enter_cell(inverse_spacing, point.offset, point.cell);
-      batch.first[filled] = field.around(point.cell);
-      if (batch.first[filled] == nullptr)
-        continue;
-      batch.place[0][filled] = static_cast<float>(place.x);
-      batch.place[1][filled] = static_cast<float>(place.y);
-      batch.place[2][filled] = static_cast<float>(place.z);
-      batch.inverse_spacing[filled] = static_cast<float>(inverse_spacing);
-      batch.level[filled] = static_cast<float>(s.level.level);
-      renewals[filled++] = renewal;
-      if (filled == width)
-        take_batch();
+      prefetch(&sliding_[index]);
+      renewals[filled++] = { block, lane, index, {} };
+      if (filled == PlaneBatch::width)
+        renew_batch(renewals, std::exchange(filled, 0), u, v, step);
     }
-  take_batch();
+  renew_batch(renewals, filled, u, v, step);
+}
+
+// Each loop needs data that the loop before it has begun to fetch.
+template <class Real>
+void RestrictedNodes<Real>::renew_batch(Renewal* renewals, int count, Real* const u[3], Real* const v[3],
+                                        const ConstraintStep& step)
+{
+  constexpr int width = PlaneBatch::width;
+  PlaneBatch batch{};
+  std::int32_t cell[width][3];
+  int filled = 0;
+  for (int l = 0; l < count; ++l)
+  {
+    Renewal renewal = renewals[l];
+    const Sliding& s = sliding_[renewal.index];
+    const std::int32_t n = block_node_[renewal.block] + renewal.lane;
+    const Point at = s.rest + Point{ u[0][n], u[1][n], u[2][n] };
+    renewal.place = s.bone < 0 ? at : pose_of(step.bone[s.bone]).inwards(at);
+    const physics::DistanceField& field = *s.level.field;
+    if (kernels_.planes == nullptr || field.radius > 0)
+    {
+      if (physics::LevelPlane<double> plane{}; s.level.plane_at(renewal.place, plane))
+        take(renewal, plane, u, v, step);
+      continue;
+    }
+    auto point = physics::field_point(field, renewal.place);
+    const double inverse_spacing = 1 / field.spacing;
+    const Point place = physics::enter_cell(inverse_spacing, point.offset, point.cell);
+    std::copy(point.cell, point.cell + 3, cell[filled]);
+    batch.place[0][filled] = static_cast<float>(place.x);
+    batch.place[1][filled] = static_cast<float>(place.y);
+    batch.place[2][filled] = static_cast<float>(place.z);
+    batch.inverse_spacing[filled] = static_cast<float>(inverse_spacing);
+    batch.level[filled] = static_cast<float>(s.level.level);
+    renewals[filled++] = renewal;
+  }
+  bool sampled[width] = {};
+  const float* some = nullptr;
+  for (int l = 0; l < filled; ++l)
+  {
+    batch.first[l] = sliding_[renewals[l].index].level.field->around(cell[l]);
+    prefetch_samples(batch.first[l]);
+    sampled[l] = batch.first[l] != nullptr;
+    some = sampled[l] ? batch.first[l] : some;
+  }
+  if (some == nullptr)
+    return;
+  // Lanes without samples take those of another, and the result is not used.
+  for (int l = 0; l < width; ++l)
+    batch.first[l] = sampled[l] ? batch.first[l] : some;
+  kernels_.planes(batch);
+  for (int l = 0; l < filled; ++l)
+    if (sampled[l] && batch.slope[l] > static_cast<float>(physics::least_gradient))
+      take(renewals[l],
+           { { double(batch.normal[0][l]), double(batch.normal[1][l]), double(batch.normal[2][l]) },
+             double(batch.distance[l]),
+             double(batch.slip[l]) },
+           u, v, step);
 }
 
 // Gives a node a new plane, and turns its velocity with the plane.
@@ -259,7 +288,7 @@ void RestrictedNodes<Real>::take(const Renewal& renewal, const physics::LevelPla
 {
   const int lane = renewal.lane;
   const std::int32_t n = block_node_[renewal.block] + lane;
-  const Sliding& s = sliding_[block_sliding_[renewal.block][lane]];
+  const Sliding& s = sliding_[renewal.index];
   Block& b = contacts_.blocks[renewal.block];
   const physics::Pose pose = s.bone < 0 ? physics::Pose() : pose_of(step.bone[s.bone]);
   Point surface_velocity{ 0, 0, 0 };
@@ -309,6 +338,7 @@ void RestrictedNodes<Real>::constrain(const NodeShare& share, Real* const u[3], 
 
   if (!prescribed_.empty())
     follow_paths(first, last, u, v, before, step);
+  hold_still(first, last, u, v);
   if (!rigid_.empty())
     follow_bones(first, last, u, v, before, step);
 }
@@ -335,18 +365,31 @@ void RestrictedNodes<Real>::follow_bones(std::int32_t first, std::int32_t last, 
 {
   const auto nodes = range(rigid_, first, last);
   const auto dt = static_cast<Real>(step.dt);
+  physics::Pose pose;
+  std::int32_t bone = -1;
   for (auto r = nodes.first; r != nodes.second; ++r)
   {
-    if (r->bone < 0)
-    {
-      for (int axis = 0; axis < 3; ++axis)
-        u[axis][r->node] = v[axis][r->node] = 0;
-      continue;
-    }
-    const Point p = rigid_rest_[r - rigid_.begin()], moved = pose_of(step.bone[r->bone]).outwards(p) - p;
+    if (r->bone != std::exchange(bone, r->bone))
+      pose = pose_of(step.bone[bone]);
+    const Point moved = pose.outwards(r->rest) - r->rest;
     const double to[3] = { moved.x, moved.y, moved.z };
     for (int axis = 0; axis < 3; ++axis)
       physics::move_to(to[axis], before[axis][r->node], dt, u[axis][r->node], v[axis][r->node]);
+  }
+}
+
+// Holds the rigid nodes that no bone moves, run by run. A run may begin in the share of another thread.
+template <class Real>
+void RestrictedNodes<Real>::hold_still(std::int32_t first, std::int32_t last, Real* const u[3], Real* const v[3]) const
+{
+  const auto before = [](const StillRun& run, std::int32_t node) { return run.node + run.count <= node; };
+  for (auto run = std::lower_bound(still_.begin(), still_.end(), first, before);
+       run != still_.end() && run->node < last; ++run)
+  {
+    const std::int32_t begin = std::max(run->node, first), end = std::min(run->node + run->count, last);
+    for (Real* const* const field : { u, v })
+      for (int axis = 0; axis < 3; ++axis)
+        std::fill(field[axis] + begin, field[axis] + end, Real(0));
   }
 }
 

@@ -63,7 +63,10 @@ public:
   }
   void run(EffectSet running) override;
   void list_arrays(ArrayList& list) override;
-  bool idle() const override { return rigid_.empty() && prescribed_.empty() && !(slides_ && !model_.sliding.empty()); }
+  bool idle() const override
+  {
+    return model_.rigid.empty() && prescribed_.empty() && !(slides_ && !model_.sliding.empty());
+  }
 
 private:
   struct Sliding
@@ -78,24 +81,38 @@ private:
   {
     std::int32_t block;
     int lane;
+    std::int32_t index;           ///< into sliding_
     physics::Vec3<double> place;  ///< in the surface's frame [m]
+  };
+  /// A rigid node on a bone.
+  struct MovedNode
+  {
+    std::int32_t node, bone;
+    physics::Vec3<double> rest;
+  };
+  /// Successive rigid nodes that stand still.
+  struct StillRun
+  {
+    std::int32_t node, count;
   };
   void make_blocks(const std::vector<SlidingNode>& nodes);
   void follow_paths(std::int32_t first, std::int32_t last, Real* const u[3], Real* const v[3],
                     const Real* const before[3], const ConstraintStep& step);
+  void hold_still(std::int32_t first, std::int32_t last, Real* const u[3], Real* const v[3]) const;
   void follow_bones(std::int32_t first, std::int32_t last, Real* const u[3], Real* const v[3],
                     const Real* const before[3], const ConstraintStep& step);
   void carry(Carrier& carrier, const Real* const u[3], const ConstraintStep& step);
   void renew(const WaitingBlock* waiting, std::int32_t count, Real* const u[3], Real* const v[3],
              const ConstraintStep& step);
+  void renew_batch(Renewal* renewals, int count, Real* const u[3], Real* const v[3], const ConstraintStep& step);
   void take(const Renewal& renewal, const physics::LevelPlane<double>& plane, Real* const u[3], Real* const v[3],
             const ConstraintStep& step);
 
   const Model& model_;
   SlideKernels<Real> kernels_;
-  std::vector<physics::DistanceField> fields_;     // of the model's surfaces
-  std::vector<RigidNode> rigid_;                   // all lists are sorted by node
-  std::vector<physics::Vec3<double>> rigid_rest_;  // their positions at rest
+  std::vector<physics::DistanceField> fields_;  // of the model's surfaces
+  std::vector<MovedNode> rigid_;                // all lists are sorted by node
+  std::vector<StillRun> still_;
   std::vector<PrescribedNode> prescribed_;
   GlidingNodes<Real> gliding_;
   std::vector<Sliding> sliding_;
