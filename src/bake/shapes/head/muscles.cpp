@@ -29,7 +29,7 @@ ControlNet Head::left_net(const HeadTemplate::Muscle& muscle) const
     lines.push_back(curve.points);
   const MuscleSheet sheet(std::move(lines), muscle.ring);
   // Fibres run from end to end, so that a muscle is thicker where they converge: else its narrow end would be stretched
-  // by the rest of it. Some of them end on the way, and none is more than twice as thick as its mean.
+  // by the rest of it. The thickness stays within 0.5 to 2 times the given one.
   constexpr int stations = 8;
   double mean_width = 0;
   for (int i = 0; i <= stations; ++i)
