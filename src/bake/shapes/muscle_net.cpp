@@ -76,9 +76,10 @@ double MuscleSheet::relative_thickness(double u, double s) const
   return (1 - 0.6 * edge * edge * edge) / 0.85 * (1 - 0.4 * std::pow(end, 4));
 }
 
-ControlNet MuscleSheet::net(const std::function<std::array<Vector3d, 2>(double u, double s)>& sides, int least_along,
-                            int least_across) const
+ControlNet MuscleSheet::net(const std::function<std::array<Vector3d, 2>(double u, double s)>& sides) const
 {
+  // With fewer control points, the spline would smooth away up to half of the cross-section.
+  constexpr int least_along = 12, least_across = 13;
   double reach = 0, width = 0;
   for (std::size_t c = 0; c < curves_.size(); ++c)
   {
@@ -107,8 +108,6 @@ ControlNet MuscleSheet::net(const std::function<std::array<Vector3d, 2>(double u
 
 ControlNet curved_muscle_net(const Shape& shape)
 {
-  // With fewer control points, the spline would smooth away more than a few per cent of the thickness.
-  constexpr int least_along = 12, least_across = 13;
   const MuscleSheet sheet(shape.curves, shape.ring);
   return sheet.net(
       [&](double u, double s) -> std::array<Vector3d, 2>
@@ -122,8 +121,7 @@ ControlNet curved_muscle_net(const Shape& shape)
         const Vector3d half = 0.5 * shape.thickness * sheet.relative_thickness(u, s) * normal;
         const Vector3d middle = sheet.at(u, s);
         return { middle - half, middle + half };
-      },
-      least_along, least_across);
+      });
 }
 
 NurbsVolume volume_of(const ControlNet& net)

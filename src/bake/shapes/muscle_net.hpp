@@ -26,10 +26,8 @@ public:
   /// Thickness divided by the mean thickness in the middle: edges and ends are thin.
   double relative_thickness(double u, double s) const;
   /// The control net whose points are `sides(u, s)`, one on each side of the middle surface. They are at most 5 mm
-  /// apart along the surface, and there are at least `least_along` of them along the fibres and `least_across` across
-  /// them.
-  ControlNet net(const std::function<std::array<Vector3d, 2>(double u, double s)>& sides, int least_along,
-                 int least_across) const;
+  /// apart along the surface, and there are at least 12 of them along the fibres and 13 across them.
+  ControlNet net(const std::function<std::array<Vector3d, 2>(double u, double s)>& sides) const;
 
 private:
   std::vector<std::vector<Vector3>> curves_;
