@@ -29,7 +29,7 @@ void for_random_motions(const std::function<void(const Matrix& F, const Matrix& 
 Matrix fibre_stress_at(const Matrix& F, const Vec3<double>& a, double with_length)
 {
   const Vec3<double> along = F * a;
-  const double S = fibre_stress(dot(along, along), kinematics_of(F).J, 0.3e6, 0.7, with_length, 1.0);
+  const double S = fibre_stress(dot(along, along), 0.3e6, 0.7, with_length, 1.0);
   return { { { S * along.x * a.x, S * along.x * a.y, S * along.x * a.z },
              { S * along.y * a.x, S * along.y * a.y, S * along.y * a.z },
              { S * along.z * a.x, S * along.z * a.y, S * along.z * a.z } } };

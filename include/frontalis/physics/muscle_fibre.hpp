@@ -1,6 +1,6 @@
 #pragma once
 
-#include "frontalis/physics/isochoric.hpp"
+#include "frontalis/physics/number.hpp"
 
 namespace frontalis
 {
@@ -39,31 +39,29 @@ FRONTALIS_LAW T passive_tension(T l)
   return curve + N::of(fibre_p1 * fibre_p2) * e * N::max(l - N::of(end), N::of(0));
 }
 
-/// Second Piola-Kirchhoff stress S along a fibre [Pa]; its tensor is S a0 (x) a0. The Cauchy stress along the fibre is
-/// sigma = stress_reference (passive + activation active) l, with the passive and active tension at the normalised
-/// length l, and S = J sigma / stretch^2. The stress fades out below a small J, so that fibres do not keep a crushed
-/// element crushed. with_length: 1 applies the tension-length relation, 0 gives the constant S = activation
-/// stress_reference. with_passive: 1 adds the passive part. Passive = false omits that part at compile time.
+/// Second Piola-Kirchhoff stress S along a fibre [Pa]; its tensor is S a0 (x) a0. The nominal stress, the force per
+/// area at rest, is N = stress_reference (passive + activation active) with the tensions at the fibre's stretch, and S
+/// = N / stretch. At constant volume the Cauchy stress is N stretch, as published. N depends on the stretch alone, so
+/// that a fibre at constant activation has a potential. With the published Cauchy stress N would be proportional to J,
+/// and the fibre would do work in cycles of volume and stretch: motions grow that way. with_length: 1 applies the
+/// tension-length relation, 0 gives the constant S = activation stress_reference. with_passive: 1 adds the passive
+/// part. Passive = false omits that part at compile time.
 template <class T, bool Passive = true>
-FRONTALIS_LAW T fibre_stress(T stretch_squared, T J, T stress_reference, T activation, T with_length, T with_passive)
+FRONTALIS_LAW T fibre_stress(T stretch_squared, T stress_reference, T activation, T with_length, T with_passive)
 {
   using N = Number<T>;
-  const T squared = N::max(stretch_squared, N::of(1e-6));
-  const T stretch = N::sqrt(squared);
+  const T stretch = N::sqrt(N::max(stretch_squared, N::of(1e-6)));
   const T l = stretch * N::of(1.0 / fibre_optimal_stretch);
-  const T to_second_piola = N::max(J, N::of(0)) * l / squared;
+  const T to_second_piola = N::of(1.0 / fibre_optimal_stretch) / stretch;
   const T active = activation * (with_length * (active_tension(l) * to_second_piola - N::of(1)) + N::of(1));
   const T passive = Passive ? with_passive * passive_tension(l) * to_second_piola : N::of(0);
-  const T fade = N::min(N::max(J * N::of(1.0 / continuation_jacobian), N::of(0)), N::of(1));
-  return stress_reference * fade * (active + passive);
+  return stress_reference * (active + passive);
 }
 
 /// Largest slopes of the nominal fibre stress with respect to stretch, divided by the stress reference, at full
-/// activation. The nominal stress, S times the stretch l, is J f(l) with the tension f. At constant volume the active
-/// part is steepest at l = 0.6 (slope 18 * 0.2) and the passive part above l = 1.4 (slope p1 p2 e^(0.4 p2)). The time
-/// step must allow for the active slope, or for the sum of both if the fibres have a passive part. Multiplied by a
-/// factor that grows with the element's deformation (physics/time_step.hpp), these bounds include the contribution of f
-/// |cof F| up to stretches of 2.5.
+/// activation. The active part is steepest at l = 0.6 (slope 18 * 0.2) and the passive part above l = 1.4 (slope p1 p2
+/// e^(0.4 p2)). The time step must allow for the active slope, or for the sum of both if the fibres have a passive
+/// part. Across the fibre its stiffness is N / stretch, which is less.
 constexpr double active_slope_bound = 3.6;
 constexpr double passive_slope_bound = 4.63;
 

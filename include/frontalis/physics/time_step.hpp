@@ -45,9 +45,7 @@ FRONTALIS_LAW T larger_or_none(const T& a, const T& b)
 ///
 /// Second derivatives of the neo-Hookean energy (materials/neo_hookean.hpp) are bounded term by term, separately for
 /// the volumetric and the isochoric part. The growth of these bounds since rest is added to the bound at rest. The
-/// nominal stress of fibres is J f(l) with the tension f at the stretch l; its derivatives with respect to l grow with
-/// J, those with respect to J grow with f and |cof F| = sqrt(3 along). At full activation these derivatives stay below
-/// their bound at rest (muscle_fibre.hpp) times the larger of J and sqrt(along I1 / 3).
+/// stiffness of fibres is bounded at any stretch (muscle_fibre.hpp) and does not grow.
 template <class T, class S>
 FRONTALIS_LAW T voxel_stiffness_now(T at_rest, const NeoHookean<T>& material, const Kinematics<T>& k, const S* weight,
                                     S half_sum)
@@ -69,10 +67,7 @@ FRONTALIS_LAW T voxel_stiffness_now(T at_rest, const NeoHookean<T>& material, co
   // The value of `isochoric` at F = 1, where I1 = 3, cof F = 1 and g' = -2/3.
   const T isochoric_at_rest = N::of(5.0 / 3) + N::of(4.0 / 3) * N::sqrt(N::of(3) * largest) + N::of(4) * largest;
   const T grown = material.kappa * volumetric + material.mu * N::max(isochoric - isochoric_at_rest, N::of(0));
-  const T elastic = material.kappa + material.mu * (N::of(2) * largest - N::of(2.0 / 3));
-  const T others = N::max(at_rest - T(half_sum) * elastic, N::of(0));
-  const T stretched = N::max(N::max(k.J, N::sqrt(N::of(1.0 / 3) * along * k.I1)) - N::of(1), N::of(0));
-  return at_rest + T(half_sum) * N::max(grown, N::of(0)) + others * stretched + (grown - grown);
+  return at_rest + T(half_sum) * N::max(grown, N::of(0)) + (grown - grown);
 }
 
 }  // namespace physics

@@ -38,10 +38,9 @@ FRONTALIS_LAW FibreState<T> fibre_state(const Fibre<T, S>& fibre, const Kinemati
     state.along[i] = k.F.a[i][0] * a[0] + k.F.a[i][1] * a[1] + k.F.a[i][2] * a[2];
   state.squared = state.along[0] * state.along[0] + state.along[1] * state.along[1] + state.along[2] * state.along[2];
   const T activation(fibre.activation), with_length(fibre.with_length);
-  state.stress =
-      fibre.passive
-          ? fibre_stress<T>(state.squared, k.J, fibre.weight, activation, with_length, Number<T>::of(1))
-          : fibre_stress<T, false>(state.squared, k.J, fibre.weight, activation, with_length, Number<T>::of(0));
+  state.stress = fibre.passive
+                     ? fibre_stress<T>(state.squared, fibre.weight, activation, with_length, Number<T>::of(1))
+                     : fibre_stress<T, false>(state.squared, fibre.weight, activation, with_length, Number<T>::of(0));
   return state;
 }
 
