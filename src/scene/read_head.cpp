@@ -355,7 +355,7 @@ HeadTemplate::Joint read_joint(const Node& node)
 
 std::vector<std::string> HeadTemplate::parts() const
 {
-  std::vector<std::string> names{ "skin", "face", "visible", "eye_left", "eye_right" };
+  std::vector<std::string> names{ "skin", "face", "visible", "mucosa", "eye_left", "eye_right" };
   for (const Built* built : { &bones, &bodies })
     for (const auto& [name, steps] : *built)
       names.push_back(name);

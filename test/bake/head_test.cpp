@@ -242,6 +242,28 @@ TEST(Head, HasHairBetweenHairlineAndNapeThatLeavesFaceAndEarsFree)
   }
 }
 
+TEST(Head, HasALiningOfTheMouthThatFacesOutOfTheTissue)
+{
+  Shape lining;
+  lining.kind = Shape::Kind::head;
+  lining.head = shipped();
+  lining.part = "mucosa";
+  Surface surface;
+  surface.shape = lining;
+  const TriangleMesh mouth = load_surface(surface, 1).mesh;
+  const PreparedSurface skin("skin", default_head().part("skin", 2e-3));
+  const auto height = [&skin](const Vector3d& p) { return skin.signed_distance(p, skin.tree().closest(p)); };
+  const std::vector<Vector3d> outwards = vertex_normals(mouth);
+  ASSERT_GT(mouth.vertices.size(), 100u);
+  for (std::size_t v = 0; v < mouth.vertices.size(); ++v)
+  {
+    const Vector3d p = to_vector(mouth.vertices[v]);
+    EXPECT_NEAR(height(p), 0, 0.3e-3);
+    EXPECT_LT(height(p - 0.6e-3 * outwards[v]), 0) << p.transpose();
+    EXPECT_LT(p[0], 10e-3) << "behind the red of the lips";
+  }
+}
+
 TEST(Head, HasBonesAtTheDepthsOfItsTable)
 {
   const TriangleMesh bones = [&]

@@ -247,7 +247,9 @@ LoadedSurface load_surface(const Surface& surface, double unit, double voxel)
     mesh = make_any(*surface.shape, unit, voxel);
     join_vertices(mesh);
     make_orientation_consistent(mesh);
-    if (unbalanced_edges(mesh).empty() ? signed_volume(mesh) < 0 : open_and_inside_out(mesh))
+    // A head's open parts face out of the tissue. The lining of the mouth would be taken to be inside out.
+    const bool closed = unbalanced_edges(mesh).empty(), oriented = surface.shape->kind == Shape::Kind::head;
+    if (closed ? signed_volume(mesh) < 0 : !oriented && open_and_inside_out(mesh))
       flip(mesh);
     return loaded;
   }

@@ -133,10 +133,12 @@ double Head::deeper(const Vector3d& skin, double depth) const
 TriangleMesh Head::skin(const std::string& name, double edge) const
 {
   // `face` is the part with a dermis; `visible` also has the linings of nostrils and lips; `skin` is the whole surface,
-  // closed by the mouth and by the sacs behind the lids
+  // closed by the mouth and by the sacs behind the lids; `mucosa` lines the mouth, behind the red of the lips
   std::vector<std::string> groups;
   if (name != "skin")
     groups = { "face", "scalp", "neck", "ear", "lid", "lid_margin", "lips" };
+  if (name == "mucosa")
+    groups = { "mucosa", "mouth" };
   if (name == "visible")
     groups.insert(groups.end(), { "nostril", "mucosa" });
   TriangleMesh mesh = subdivide(cage_, levels_for(cage_, edge), groups);
@@ -180,7 +182,8 @@ TriangleMesh Head::bone(const std::string& name, double edge) const
 TriangleMesh Head::part(const std::string& name, double wanted_edge) const
 {
   const double edge = wanted_edge > 0 ? wanted_edge : name == "skull" ? skull_edge : default_edge;
-  if (name == "skin" || name == "face" || name == "visible" || (name == "hair" && bones_->has("hair_top")))
+  if (name == "skin" || name == "face" || name == "visible" || name == "mucosa" ||
+      (name == "hair" && bones_->has("hair_top")))
     return skin(name, edge);
   if (name == "eye_left" || name == "eye_right")
     return eye(name == "eye_left", edge);
