@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+
 using namespace frontalis::physics;
 
 TEST(MuscleFibre, ActiveTensionIsContinuousAndPeaksAtTheOptimalLength)

@@ -121,6 +121,17 @@ TEST(AssembledEstimate, looks_as_far_ahead_as_before_when_tissue_has_stiffened)
   EXPECT_EQ(search.searches, 3) << "the activations of the search before still cover these";
 }
 
+TEST(AssembledEstimate, forgets_activations_when_discarded)
+{
+  AssembledEstimate estimate;
+  Search search;
+  search.renew(estimate, 0.3F);
+  estimate.steps_taken(150);
+  estimate.discard();
+  search.renew(estimate, 0.1F);
+  EXPECT_FLOAT_EQ(search.activation, 0.12F);
+}
+
 TEST(AssembledEstimate, is_found_often_while_bones_move)
 {
   AssembledEstimate estimate;

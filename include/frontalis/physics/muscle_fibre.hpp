@@ -39,13 +39,13 @@ FRONTALIS_LAW T passive_tension(T l)
   return curve + N::of(fibre_p1 * fibre_p2) * e * N::max(l - N::of(end), N::of(0));
 }
 
-/// Second Piola-Kirchhoff stress S along a fibre [Pa]; its tensor is S a0 (x) a0. The nominal stress, the force per
-/// area at rest, is N = stress_reference (passive + activation active) with the tensions at the fibre's stretch, and S
-/// = N / stretch. At constant volume the Cauchy stress is N stretch, as published. N depends on the stretch alone, so
-/// that a fibre at constant activation has a potential. With the published Cauchy stress N would be proportional to J,
-/// and the fibre would do work in cycles of volume and stretch: motions grow that way. with_length: 1 applies the
-/// tension-length relation, 0 gives the constant S = activation stress_reference. with_passive: 1 adds the passive
-/// part. Passive = false omits that part at compile time.
+/// Second Piola-Kirchhoff stress S along a fibre [Pa]; its tensor is S a0 (x) a0. with_length: 1 applies the
+/// tension-length relation: the nominal stress, the force per area at rest, is N = stress_reference (passive +
+/// activation active) with the tensions at the fibre's stretch, and S = N / stretch. 0 gives the constant S =
+/// activation stress_reference. Both depend on the stretch alone, so that a fibre at constant activation has a
+/// potential. At constant volume the Cauchy stress is N stretch, as published. With that Cauchy stress at any volume, N
+/// would be proportional to J, and a fibre would do work in cycles of volume and stretch, from which motions grow.
+/// with_passive: 1 adds the passive part. Passive = false omits that part at compile time.
 template <class T, bool Passive = true>
 FRONTALIS_LAW T fibre_stress(T stretch_squared, T stress_reference, T activation, T with_length, T with_passive)
 {

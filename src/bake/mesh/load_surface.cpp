@@ -247,8 +247,9 @@ LoadedSurface load_surface(const Surface& surface, double unit, double voxel)
     mesh = make_any(*surface.shape, unit, voxel);
     join_vertices(mesh);
     make_orientation_consistent(mesh);
-    // A head's open parts face out of the tissue. The lining of the mouth would be taken to be inside out.
-    const bool closed = unbalanced_edges(mesh).empty(), oriented = surface.shape->kind == Shape::Kind::head;
+    // The lining of a head's mouth faces out of the tissue, into the mouth, and would be taken to be inside out.
+    const bool closed = unbalanced_edges(mesh).empty();
+    const bool oriented = surface.shape->kind == Shape::Kind::head && surface.shape->part == "mucosa";
     if (closed ? signed_volume(mesh) < 0 : !oriented && open_and_inside_out(mesh))
       flip(mesh);
     return loaded;

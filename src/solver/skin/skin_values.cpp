@@ -1,7 +1,7 @@
 #include "solver/skin/skin_values.hpp"
 
 #include "frontalis/error.hpp"
-#include "frontalis/physics/muscle_fibre.hpp"
+#include "frontalis/physics/isochoric.hpp"
 #include "frontalis/physics/symmetric_eigen.hpp"
 #include "frontalis/physics/trilinear.hpp"
 #include "frontalis/physics/voxel_element.hpp"

@@ -38,7 +38,7 @@ void AssembledEstimate::renew(const std::vector<float>& activation, bool moving,
     activated = activated || activation[m] > activation_[m];
   if (moving)
     steps_valid_ = std::min(steps_valid_, shortest_valid);
-  const bool grown = bound > growth_allowed * bound_ && steps_ >= steps_until_growth_counts;
+  const bool grown = bound_ > 0 && bound > growth_allowed * bound_ && steps_ >= steps_until_growth_counts;
   if (bound_ > 0 && !activated && !grown && steps_ < steps_valid_)
     return;
   // A search after growth keeps the activations, because they may be on their way to those.
