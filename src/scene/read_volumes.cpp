@@ -18,7 +18,7 @@ void read_depth(const Node& node, Volume& volume, const SceneNames& names)
 {
   Mapping mapping(node);
   volume.within = mapping.required("surface", "the name of a surface").reference(names.surfaces);
-  volume.depth_min = mapping.optional("from").number(Dimension::length, not_negative, 0);
+  volume.depth_min = mapping.optional("from").number(Dimension::length, any_number, 0);
   const Node to = mapping.required("to", "a depth greater than 'from'");
   volume.depth_max = to.number(Dimension::length, any_number, std::nan(""));
   if (volume.depth_max <= volume.depth_min)

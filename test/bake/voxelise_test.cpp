@@ -129,6 +129,21 @@ TEST(Voxelise, DepthBandBelowASurface)
   EXPECT_NEAR(tissue_volume(bake(scene)) / (4.0 / 3 * pi * (729e-9 - 343e-9)), 1, 0.01);
 }
 
+TEST(Voxelise, DepthBandAboveASurface)
+{
+  Scene scene = plain_scene(0.5e-3);
+  scene.surfaces = { sphere_surface("bone", { 0, 0, 0 }, 7e-3, 0.4e-3) };
+  Volume band;
+  band.name = "periosteum";
+  band.within = "bone";
+  band.depth_min = -2e-3;
+  band.depth_max = 0;
+  band.material = "fat";
+  band.tissue = true;
+  scene.volumes = { band };
+  EXPECT_NEAR(tissue_volume(bake(scene)) / (4.0 / 3 * pi * (729e-9 - 343e-9)), 1, 0.01);
+}
+
 TEST(Voxelise, CropCutsExactly)
 {
   Scene scene = plain_scene(1e-3);

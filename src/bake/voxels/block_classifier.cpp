@@ -256,7 +256,7 @@ void BlockClassifier::decide_sight(std::size_t volume, const Box& box, BlockStat
     return;
   const Vector3d centre = box.center();
   const double radius = (box.max() - centre).norm();
-  const double bound = entry.volume->depth_max + radius;
+  const double bound = entry.reach() + radius;
   const ClosestPoint closest = volumes_.depth_fields()[*entry.within].surface->tree().closest(centre, bound);
   if (closest.triangle < 0)
     return;

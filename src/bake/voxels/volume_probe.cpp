@@ -17,7 +17,7 @@ bool at_depth(const Volumes& volumes, const Volumes::Entry& entry, const Vector3
   if (!entry.within)
     return true;
   const PreparedSurface& surface = *volumes.depth_fields()[*entry.within].surface;
-  const ClosestPoint closest = surface.tree().closest(p, entry.volume->depth_max * (1 + 1e-9));
+  const ClosestPoint closest = surface.tree().closest(p, entry.reach() * (1 + 1e-9));
   if (closest.triangle < 0)
     return false;
   const double depth = -surface.signed_distance(p, closest);

@@ -127,7 +127,7 @@ Box Volumes::bounds_of(const Entry& entry) const
   if (entry.within)
   {
     const Box& box = depth_fields_[*entry.within].surface->box();
-    const Vector3d reach = Vector3d::Constant(entry.volume->depth_max);
+    const Vector3d reach = Vector3d::Constant(entry.reach());
     bounds = bounds.intersection(Box(box.min() - reach, box.max() + reach));
   }
   if (!bounds.min().allFinite() || !bounds.max().allFinite())

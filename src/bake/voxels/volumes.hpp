@@ -45,6 +45,8 @@ public:
     int muscle = -1;                       ///< index; -1: none
     std::vector<Band> bands;
 
+    /// Largest distance of its points from the surface of the depth field [m].
+    double reach() const { return std::max(volume->depth_max, -volume->depth_min); }
     /// Whether the volume excludes points if an `outside` body lies between them and the surface of the depth field.
     bool needs_sight() const { return within && hiding > 0; }
     /// Whether condition(index) is true for any of the bodies that hide points; see `hiding`.

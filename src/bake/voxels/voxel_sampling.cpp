@@ -79,7 +79,7 @@ bool BlockClassifier::sample_volume(std::size_t volume, const Vector3d& p, const
     return false;
   if (!entry.needs_sight())
     return true;
-  return state.in_sight[volume] == Answer::unknown ? in_sight(entry, p, entry.volume->depth_max + reach_)
+  return state.in_sight[volume] == Answer::unknown ? in_sight(entry, p, entry.reach() + reach_)
                                                    : state.in_sight[volume] == Answer::yes;
 }
 
