@@ -79,7 +79,8 @@ struct Surface
 
 /// The set of points that meet all of these conditions; a condition with an empty field does not apply. The point lies
 /// inside the surface formed by all of `closed_by`, inside at least one of `inside`, outside all of `outside` and
-/// `without`, inside `crop`, and depth_min to depth_max [m] below `within`, with none of `outside` in between.
+/// `without`, inside `crop`, and depth_min to depth_max [m] below `within` (negative: above it), with none of `outside`
+/// in between.
 struct Volume
 {
   std::string name;
