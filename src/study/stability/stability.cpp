@@ -146,13 +146,19 @@ void write_stability(const Trials& trials, const std::string& folder)
   const std::filesystem::path pictures = std::filesystem::path(folder) / "stability";
   make_folder(pictures.string());
   std::string out =
-      "# Hard cases\n\nMotions that explicit codes fail at. Each must hold, or be stopped with a report and the last "
-      "good state. A case passes when all its checks do and every energy, volume ratio and displacement stays "
-      "finite.\n\n*Worst J* is the smallest volume ratio of a voxel, *energy* the imbalance of the energy ledger, and "
-      "*hourglass* the energy of hourglass modes, both over the largest term of the ledger. Each case has a file in "
-      "test/stability with its description, sizes, times and bounds. This document is written by `./dev cli stability "
-      "--all --mesh-dir DIR --markdown doc`, and its figures are from one run of it where nothing else is said. "
-      "`--models DIR` writes the model of each motion.\n";
+      "# Hard cases\n\n"
+      "This page lists motions that explicit finite element codes tend to fail at, and how frontalis copes with each. "
+      "A case must hold, or be stopped with a report and the last good state. It passes when all its checks do and "
+      "every energy, volume ratio and displacement stays finite.\n\n"
+      "A guard watches every motion, in these cases and in use. When it finds a fault, it returns to the latest good "
+      "state and takes shorter steps for a while: *the guard went back*. After three tries it stops the motion with a "
+      "report that names the voxel and the likely cause ([an example](#held_neighbours)).\n\n"
+      "    ./dev cli stability --only finger lips                     # some cases\n"
+      "    ./dev cli stability --all --mesh-dir DIR --markdown doc    # all in full length; writes this document\n\n"
+      "The figures are from one run of the second command where nothing else is said. `--models DIR` writes the model "
+      "of each motion. Each case has a file in test/stability with its description, sizes, times and bounds.\n\n"
+      "*Worst J* is the smallest volume ratio of a voxel, *energy* the imbalance of the energy ledger, and "
+      "*hourglass* the energy of hourglass modes, both over the largest term of the ledger.\n";
   out += "\n" + trials_markdown(trials);
   // A text written by hand about runs on other machines.
   std::ifstream elsewhere(pictures / "elsewhere.md");
