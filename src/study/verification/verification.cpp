@@ -129,12 +129,14 @@ void write_manual(const Findings& findings, const std::string& path)
   make_folder(pictures.string());
   const std::map<std::string, CaseText> texts = read_texts((pictures / "text.md").string());
   std::string out =
-      "# Verification\n\nThe solver against closed forms, published figures and CalculiX. The table says how many "
-      "checks of each case pass, and how much of its bound the check uses that comes closest to it; a check passes "
-      "when "
-      "its error is within its bound. Figures without a bound are only *shown*. Errors and bounds in % are relative. "
-      "Long tables are folded: click on their captions.\n\nThis document is written by `./dev cli verify --markdown "
-      "doc/verification.md` with the texts of verification/text.md, and all figures are from one run of it.\n";
+      "# Verification\n\n"
+      "This page compares the solver with closed forms, published figures and CalculiX. A check passes when its "
+      "error is within its bound; figures without a bound are only *shown*. The table says how many checks of each "
+      "case pass, and how much of its bound the check uses that comes closest to it. Errors and bounds in % are "
+      "relative. Long tables are folded: click on their captions.\n\n"
+      "    ./dev cli verify --only hertz shell                       # some cases\n"
+      "    ./dev cli verify --markdown doc/verification.md           # all; writes this document\n\n"
+      "The texts are from verification/text.md, and all figures from one run of the second command.\n";
   Table overview({ "case", "checks", "passed", "most of a bound used [%]" });
   std::string sections;
   for (const auto& [name, finding] : findings)
