@@ -22,6 +22,7 @@ struct Slab
   double base = 1e3;                                              ///< Young's modulus below the layers [Pa]
   std::vector<Layer> layers{ { shell_young, shell_thickness } };  ///< outermost first
   double depth = 0;  ///< depth of the first layer's upper side below the top [m]
+  double rough = 2;  ///< edge of the triangles of which the layers' surface is made before the bake, in voxel edges
 };
 
 /// The slab, baked from a scene.
