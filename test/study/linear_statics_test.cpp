@@ -45,6 +45,35 @@ TEST(LinearStatics, TakesPrescribedDisplacements)
     EXPECT_NEAR(u[n][0], 1e-3 * rest_position(model, n)[0], 1e-10);
 }
 
+// A shell that its voxel does not hold is stretched as a sheet of its own.
+TEST(LinearStatics, PullsAShellAlone)
+{
+  constexpr double side = 2e-3, thickness = 1e-4, young = 1e6, stress = 100;
+  Model model = voxel_model({ { 1, 1, 1 } }, side, neo_hookean(young, 0.3));
+  Shell shell;
+  shell.name = "sheet";
+  shell.thickness = thickness;
+  shell.surface = grid_mesh(3, 4, [](double s, double t) { return Point{ { s * side, t * side, 0 } }; });
+  shell.binding = bind_points(model, shell.surface.vertices);
+  model.shells = { shell };
+  const Vectors& at = shell.surface.vertices;
+  Vectors forces(at.size());
+  std::vector<std::array<bool, 3>> fixed;
+  for (std::size_t v = 0; v < at.size(); ++v)
+  {
+    fixed.push_back({ { at[v][0] == 0, at[v][1] == 0, true } });
+    if (at[v][0] > 0.99 * side)
+      forces[v][0] = stress * thickness * side / (at[v][1] == 0 || at[v][1] > 0.99 * side ? 8 : 4);
+  }
+  const Vectors u = LinearStatics(model, fixed).solve(forces);
+  for (std::size_t v = 0; v < at.size(); ++v)
+  {
+    EXPECT_NEAR(u[v][0], stress / young * at[v][0], 1e-12);
+    EXPECT_NEAR(u[v][1], -0.3 * stress / young * at[v][1], 1e-12);
+    EXPECT_EQ(u[v][2], 0);
+  }
+}
+
 TEST(LinearStatics, FindsWhatIsUnstable)
 {
   const Model model = bar(1e5, 0.3);

@@ -41,7 +41,9 @@ private:
 /// A surface z = 1/2 (k11 x^2 + k22 y^2 + k12 x y) over the triangle's plane gives the outer vertices the heights T k,
 /// hence k = T^-1 times the change of heights. The energy is 1/2 A k^T C k, C = D [1 nu 0; nu 1 0; 0 0 (1 - nu) / 2]
 /// and D = E t^3 / (12 (1 - nu^2)), as in a plate (Timoshenko & Woinowsky-Krieger, Theory of Plates and Shells). Where
-/// the six vertices lie close to a conic, T is nearly singular; Tikhonov's regularisation then limits its inverse.
+/// the six vertices lie close to a conic, T is nearly singular; Tikhonov's regularisation then limits its inverse. The
+/// energy of a constant curvature is exact on any mesh. The forces of a uniform moment cancel at vertices only where
+/// triangles are regular; elsewhere a shell is too soft (doc/wrinkles.md).
 ShellMesh::Triangle shell_triangle(const std::array<physics::Vec3<double>, 6>& x, const std::array<bool, 3>& beyond,
                                    double thickness, double young, double poisson);
 

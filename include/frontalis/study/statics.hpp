@@ -35,19 +35,24 @@ Point internal_force(Solver& solver, const std::vector<std::int32_t>& nodes);
 
 /// Statics of small displacements about a homogeneous deformation. The stiffness is the tangent of the solver's own
 /// internal forces, assembled and factorised directly, so that errors come from the elements alone and not from
-/// incomplete settling. Element matrices are central differences of the reference solver's forces.
+/// incomplete settling. Element matrices are central differences of the reference solver's forces and of the law of
+/// shells.
 class LinearStatics
 {
 public:
   /// `gradient`: deformation gradient, row by row, of the state to linearise about. Rigid nodes and the components that
   /// model.prescribed names are fixed. Throws Error if the model has muscles or sliding nodes.
   explicit LinearStatics(const Model& model, const std::array<double, 9>& gradient = { { 1, 0, 0, 0, 1, 0, 0, 0, 1 } });
+  /// Statics of a model's shells alone, about their shape at rest. Their vertices are free of the voxels that carry
+  /// them; `fixed` has the components that are held, for each vertex of ShellMesh.
+  LinearStatics(const Model& model, const std::vector<std::array<bool, 3>>& fixed);
   ~LinearStatics();
 
   /// Whether the state is stable, that is whether all pivots of the factorisation were positive.
   bool positive_definite() const;
 
-  /// Displacements [m] under nodal forces [N] and the prescribed displacements. Throws Error in an unstable state.
+  /// Displacements [m] under forces [N] on nodes, or on vertices, and the prescribed displacements. Throws Error in an
+  /// unstable state.
   Vectors solve(const Vectors& forces) const;
 
 private:

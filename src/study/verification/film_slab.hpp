@@ -6,8 +6,8 @@
 namespace frontalis
 {
 
-inline constexpr double shell_young = 1e6,
-                        shell_poisson = 0.49;  ///< Young's modulus [Pa] and Poisson's ratio of a shell
+/// Young's modulus [Pa], Poisson's ratio and thickness [m] of a shell.
+inline constexpr double shell_young = 1e6, shell_poisson = 0.49, shell_thickness = 2e-4;
 
 /// A box of tissue under layers that are shells. The box is cut out of a larger one, so that the layers cover only the
 /// top. Poisson's ratio is `shell_poisson` everywhere.
@@ -18,10 +18,11 @@ struct Slab
     double young, thickness;  ///< [Pa], [m]
   };
   Voxel size;
-  double edge = 1e-3;                                  ///< edge of voxels [m]
-  double base = 1e3;                                   ///< Young's modulus below the layers [Pa]
-  std::vector<Layer> layers{ { shell_young, 2e-4 } };  ///< outermost first
-  double depth = 0;                                    ///< depth of the first layer's upper side below the top [m]
+  double edge = 1e-3;                                             ///< edge of voxels [m]
+  double base = 1e3;                                              ///< Young's modulus below the layers [Pa]
+  std::vector<Layer> layers{ { shell_young, shell_thickness } };  ///< outermost first
+  double depth = 0;  ///< depth of the first layer's upper side below the top [m]
+  double rough = 2;  ///< edge of the triangles of which the layers' surface is made before the bake, in voxel edges
 };
 
 /// The slab, baked from a scene.

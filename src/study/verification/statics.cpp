@@ -106,31 +106,15 @@ Sparse voxel_stiffness(const Model& model, const std::array<double, 9>& gradient
   return sparse(size, size, entries);
 }
 
-// Stiffness of shells, by central differences of the forces of each triangle, which are passed on to the nodes.
-Sparse shell_stiffness(const Model& model, const std::array<double, 9>& gradient)
+// Stiffness of shells between their own vertices, by central differences of the forces of each triangle about the
+// displacements `moved`.
+Sparse vertex_stiffness(const ShellMesh& mesh, const std::vector<physics::Vec3<double>>& moved)
 {
-  const ShellMesh mesh(model);
-  const auto vertices = mesh.binding.voxel.size();
-  Entries entries, binding;
-  std::vector<physics::Vec3<double>> moved(vertices);
-  const Vectors of_nodes = affine_displacements(model, gradient);
-  for (std::size_t v = 0; v < vertices; ++v)
-  {
-    const auto& at = mesh.binding.coordinates[v];
-    double weight[8];
-    physics::trilinear_weights<double>(at[0], at[1], at[2], weight);
-    moved[v] = { 0, 0, 0 };
-    for (std::size_t b = 0; b < 8; ++b)
-    {
-      const auto node = model.voxel_nodes[mesh.binding.voxel[v]][b];
-      const Point& u = of_nodes[node];
-      moved[v] = moved[v] + weight[b] * physics::Vec3<double>{ u[0], u[1], u[2] };
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        binding.emplace_back(row_of(node, axis), row_of(v, axis), weight[b]);
-    }
-  }
-  const double step = 1e-6 * *std::min_element(model.spacing.begin(), model.spacing.end());
+  Entries entries;
+  entries.reserve(mesh.triangles.size() * 18 * 18);
   for (const auto& triangle : mesh.triangles)
+  {
+    const double step = 1e-6 / std::sqrt(triangle.rest.inverse_area);
     for (std::size_t column = 0; column < 18; ++column)
     {
       physics::Vec3<double> u[6];
@@ -151,9 +135,37 @@ Sparse shell_stiffness(const Model& model, const std::array<double, 9>& gradient
                                of_axis[axis]);
       }
     }
-  const auto size = row_of(vertices, 0);
-  const Sparse own = sparse(size, size, entries), bind = sparse(row_of(model.nodes.size(), 0), size, binding);
-  return 0.5 * bind * Sparse(own + Sparse(own.transpose())) * bind.transpose();
+  }
+  const auto size = row_of(moved.size(), 0);
+  const Sparse own = sparse(size, size, entries);
+  return 0.5 * Sparse(own + Sparse(own.transpose()));
+}
+
+// Stiffness of shells between the nodes that carry them.
+Sparse shell_stiffness(const Model& model, const std::array<double, 9>& gradient)
+{
+  const ShellMesh mesh(model);
+  const auto vertices = mesh.binding.voxel.size();
+  Entries binding;
+  std::vector<physics::Vec3<double>> moved(vertices);
+  const Vectors of_nodes = affine_displacements(model, gradient);
+  for (std::size_t v = 0; v < vertices; ++v)
+  {
+    const auto& at = mesh.binding.coordinates[v];
+    double weight[8];
+    physics::trilinear_weights<double>(at[0], at[1], at[2], weight);
+    moved[v] = { 0, 0, 0 };
+    for (std::size_t b = 0; b < 8; ++b)
+    {
+      const auto node = model.voxel_nodes[mesh.binding.voxel[v]][b];
+      const Point& u = of_nodes[node];
+      moved[v] = moved[v] + weight[b] * physics::Vec3<double>{ u[0], u[1], u[2] };
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        binding.emplace_back(row_of(node, axis), row_of(v, axis), weight[b]);
+    }
+  }
+  const Sparse bind = sparse(row_of(model.nodes.size(), 0), row_of(vertices, 0), binding);
+  return bind * vertex_stiffness(mesh, moved) * bind.transpose();
 }
 
 }  // namespace
@@ -203,11 +215,13 @@ Point internal_force(Solver& solver, const std::vector<std::int32_t>& nodes)
 
 struct LinearStatics::System
 {
-  // for each component of each node, the index of its unknown; -1: the component is fixed
+  // for each component of each point, the index of its unknown; -1: the component is fixed
   std::vector<std::array<int, 3>> unknown;
   Vectors fixed;           // prescribed displacements [m]
   Eigen::VectorXd forces;  // forces that prescribed displacements cause [N]
   Eigen::SimplicialLLT<Sparse> factor;
+
+  explicit System(std::size_t points) : unknown(points, { { 0, 0, 0 } }), fixed(points, { { 0, 0, 0 } }) {}
 
   template <class Visit>
   void for_each_unknown(const Visit& visit) const
@@ -217,43 +231,54 @@ struct LinearStatics::System
         if (unknown[n][axis] >= 0)
           visit(unknown[n][axis], n, axis);
   }
+
+  // Numbers the components that are not fixed, and factorises their stiffness.
+  void factorise(const Sparse& stiffness)
+  {
+    int count = 0;
+    for (auto& point : unknown)
+      for (int& row : point)
+        row = row < 0 ? -1 : count++;
+    Entries kept;
+    Eigen::VectorXd prescribed = Eigen::VectorXd::Zero(stiffness.cols());
+    for (std::size_t n = 0; n < unknown.size(); ++n)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        prescribed[row_of(n, axis)] = fixed[n][axis];
+    for_each_unknown([&](int row, std::size_t n, std::size_t axis) { kept.emplace_back(row, row_of(n, axis), 1); });
+    const Sparse select = sparse(count, static_cast<int>(stiffness.cols()), kept);
+    forces = -(select * (stiffness * prescribed));
+    factor.compute(select * stiffness * select.transpose());
+  }
 };
 
 LinearStatics::LinearStatics(const Model& model, const std::array<double, 9>& gradient)
-    : system_(std::make_unique<System>())
+    : system_(std::make_unique<System>(model.nodes.size()))
 {
   if (!model.muscles.empty() || !model.sliding.empty())
     throw Error("linear statics: the model has muscles or sliding nodes; it must have neither");
-  auto& unknown = system_->unknown;
-  unknown.assign(model.nodes.size(), { { 0, 0, 0 } });
-  system_->fixed.assign(model.nodes.size(), { { 0, 0, 0 } });
   for (const auto& rigid : model.rigid)
-    unknown[rigid.node] = { { -1, -1, -1 } };
+    system_->unknown[rigid.node] = { { -1, -1, -1 } };
   for (const auto& [node, load] : model.prescribed)
     for (std::size_t axis = 0; axis < 3; ++axis)
       if (model.loads[load].fixed[axis])
       {
-        unknown[node][axis] = -1;
+        system_->unknown[node][axis] = -1;
         system_->fixed[node][axis] = model.loads[load].value[axis];
       }
-  int count = 0;
-  for (auto& node : unknown)
-    for (int& row : node)
-      row = row < 0 ? -1 : count++;
-
   Sparse stiffness = voxel_stiffness(model, gradient);
   if (!model.shells.empty())
     stiffness += shell_stiffness(model, gradient);
-  Entries kept;
-  Eigen::VectorXd fixed = Eigen::VectorXd::Zero(stiffness.cols());
-  for (std::size_t n = 0; n < unknown.size(); ++n)
+  system_->factorise(stiffness);
+}
+
+LinearStatics::LinearStatics(const Model& model, const std::vector<std::array<bool, 3>>& fixed)
+    : system_(std::make_unique<System>(fixed.size()))
+{
+  for (std::size_t v = 0; v < fixed.size(); ++v)
     for (std::size_t axis = 0; axis < 3; ++axis)
-      fixed[row_of(n, axis)] = system_->fixed[n][axis];
-  system_->for_each_unknown([&](int row, std::size_t n, std::size_t axis)
-                            { kept.emplace_back(row, row_of(n, axis), 1); });
-  const Sparse select = sparse(count, static_cast<int>(stiffness.cols()), kept);
-  system_->forces = -(select * (stiffness * fixed));
-  system_->factor.compute(select * stiffness * select.transpose());
+      if (fixed[v][axis])
+        system_->unknown[v][axis] = -1;
+  system_->factorise(vertex_stiffness(ShellMesh(model), std::vector<physics::Vec3<double>>(fixed.size(), { 0, 0, 0 })));
 }
 
 LinearStatics::~LinearStatics() = default;

@@ -36,6 +36,7 @@ std::vector<VerificationCase> verification_cases(const BakeScene& bake)
            { "free_sides", false, baked(verify_free_sides) },
            { "wrinkling", true, verify_wrinkling },
            { "shell", true, baked(verify_shell) },
+           { "pinched_shell", false, baked(verify_pinched_shell) },
            { "wrinkle", false, baked(verify_wrinkle) },
            { "viscosity", true, verify_viscosity },
            { "hertz", false, verify_hertz },

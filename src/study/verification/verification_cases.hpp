@@ -19,6 +19,7 @@ void verify_attachment(const Backend& backend, const BakeScene& bake, Finding& f
 void verify_fitted_layers(const Backend& backend, const BakeScene& bake, Finding& finding);
 void verify_free_sides(const Backend& backend, const BakeScene& bake, Finding& finding);
 void verify_shell(const Backend& backend, const BakeScene& bake, Finding& finding);
+void verify_pinched_shell(const Backend& backend, const BakeScene& bake, Finding& finding);
 void verify_wrinkle(const Backend& backend, const BakeScene& bake, Finding& finding);
 
 inline constexpr HourglassControl hourglass_forms[] = { HourglassControl::scalar, HourglassControl::assumed_strain };

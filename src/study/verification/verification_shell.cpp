@@ -1,6 +1,7 @@
-// Layers that are shells, baked from scenes: strained membranes, bent plates, a cantilever.
+// Layers that are shells, baked from scenes: strained membranes, bent plates, a plate under pressure, a cantilever.
 
 #include "frontalis/physics/number.hpp"
+#include "frontalis/solver/shell_mesh.hpp"
 #include "study/verification/film_slab.hpp"
 
 #include <cmath>
@@ -52,10 +53,65 @@ double bump_energy(const Model& model, const Slab& slab, double angle)
   return shell_energy(model, u) / (0.5 * bending_stiffness(slab.layers[0].thickness) * squared);
 }
 
+// Mean deflection of a square shell alone, supported at its edges, under a uniform pressure, divided by that of plate
+// theory (Navier's series).
+double pressed_deflection(const Model& model, double side)
+{
+  const ShellMesh mesh(model);
+  const double pressure = 1;
+  Vectors loads(mesh.binding.voxel.size());
+  std::vector<std::array<bool, 3>> held;
+  for (std::size_t v = 0; v < loads.size(); ++v)
+  {
+    const Voxel& voxel = model.voxels[mesh.binding.voxel[v]];
+    bool edge = false;
+    for (std::size_t axis = 0; axis < 2; ++axis)
+    {
+      const double at = (voxel[axis] + double(mesh.binding.coordinates[v][axis])) * model.spacing[axis] / side;
+      edge = edge || at < 1e-6 || at > 1 - 1e-6;
+    }
+    held.push_back({ { true, true, edge } });
+  }
+  for (const auto& triangle : mesh.triangles)
+    for (std::size_t i = 0; i < 3; ++i)
+      loads[triangle.vertex[i]][2] += pressure / (6 * triangle.rest.inverse_area);
+  const Vectors u = LinearStatics(model, held).solve(loads);
+  double work = 0, expected = 0;
+  for (std::size_t v = 0; v < u.size(); ++v)
+    work += loads[v][2] * u[v][2];
+  for (int m = 1; m < 100; m += 2)
+    for (int n = 1; n < 100; n += 2)
+      expected += std::pow(m * n * (m * m + n * n), -2.0);
+  expected *= 64 / std::pow(physics::pi, 8) * pressure * std::pow(side, 4) / bending_stiffness(shell_thickness);
+  return work / (pressure * side * side) / expected;
+}
+
+// A square shell of 2 n^2 triangles in a single voxel. Diagonals of its squares have one direction, or two in turn.
+Model ruled_plate(int n, double side, bool in_turn)
+{
+  Model model = voxel_model({ { 1, 1, 1 } }, side, neo_hookean(shell_young, shell_poisson));
+  Shell shell;
+  shell.name = "plate";
+  shell.thickness = shell_thickness;
+  shell.surface = grid_mesh(n, n, [side](double s, double t) { return Point{ { s * side, t * side, 0 } }; });
+  for (int i = 0; i < n && in_turn; ++i)
+    for (int j = i % 2; j < n; j += 2)
+    {
+      auto* const pair = &shell.surface.triangles[2 * (i * n + j)];
+      const std::int32_t corner = pair[0][0], below = pair[0][1], across = pair[0][2], beside = pair[1][2];
+      pair[0] = { { corner, below, beside } };
+      pair[1] = { { below, across, beside } };
+    }
+  shell.binding = bind_points(model, shell.surface.vertices);
+  model.shells = { shell };
+  return model;
+}
+
 // Tip deflection of a strip under a force at its tip, by linear statics, divided by the deflection of a beam.
-double strip_deflection(double depth, const BakeScene& bake)
+double strip_deflection(double depth, const BakeScene& bake, double rough = 2)
 {
   Slab slab{ { { 33, 4, 1 } } };
+  slab.rough = rough;
   slab.base = 40;
   slab.depth = depth * slab.edge;
   Model model = baked(slab, bake);
@@ -91,7 +147,7 @@ Model baked(const Slab& slab, const BakeScene& bake)
     surface.shape = Shape();
     surface.shape->size = { length + margin, width + margin, height + margin };
     surface.shape->centre = { 0.5 * length, 0.5 * width, top - 0.5 * (height + margin) };
-    surface.shape->edge = 2 * slab.edge;
+    surface.shape->edge = slab.rough * slab.edge;
     scene.surfaces.push_back(surface);
   }
   const auto add_material = [&](const std::string& name, double modulus)
@@ -149,9 +205,32 @@ void verify_shell(const Backend& /*backend*/, const BakeScene& bake, Finding& fi
   for (const double degrees : { 0.0, 20.0, 45.0 })
     finding.checks.relative("plate bent at " + readable(degrees) + " degrees to the voxels: energy over theory's", "1",
                             1, bump_energy(model, slab, degrees * physics::pi / 180), 0.05);
+  const auto pressed = [&](const std::string& name, const Model& plate, double bound)
+  {
+    finding.checks.relative("plate under pressure, " + name + ": deflection over theory's", "1", 1,
+                            pressed_deflection(plate, side), bound);
+  };
+  pressed("triangles of the bake", model, 0.05);
+  pressed("triangles in rows", ruled_plate(40, side, false), 0.01);
+  pressed("diagonals in turn", ruled_plate(40, side, true), std::nan(""));
+  Table rough({ "triangles of the surface [voxel edges]", "plate bent at 20 degrees: energy", "plate under pressure",
+                "cantilever" });
+  double softest = 1;
+  for (const double edges : { 2.0, 7.3, 13.0, 100.0 })
+  {
+    Slab other = slab;
+    other.rough = edges;
+    const Model plate = baked(other, bake);
+    const double deflection = pressed_deflection(plate, side);
+    softest = std::max(softest, deflection);
+    rough.add({ edges, bump_energy(plate, other, physics::pi / 9), deflection, strip_deflection(0.5, bake, edges) });
+  }
+  finding.checks.relative("plate under pressure, other surfaces: largest deflection over theory's", "1", 1, softest,
+                          0.05);
   for (const double depth : { 0.2, 0.5 })
     finding.checks.relative("cantilever, shell " + readable(depth) + " voxels deep: deflection over theory's", "1", 1,
                             strip_deflection(depth, bake), 0.1);
+  finding.tables.emplace_back("The same slabs from surfaces with other triangles, over theory's", rough);
   Table table = film_table();
   check_film({ { { shell_young, 0.5e-3 } }, 0.01 * shell_young, 1e-3 }, "film 100 times as stiff as its base", bake,
              table, finding);
