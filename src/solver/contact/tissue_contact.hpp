@@ -20,9 +20,11 @@ namespace frontalis
 ///
 /// A vertex forms pairs with at most `most_pairs` triangles that face it, and follows the surface from one triangle to
 /// the next. A grid finds the pairs within three steps: the first sorts all triangles into cells, the second searches
-/// near each vertex, the third puts the pairs into blocks. The search is repeated when nodes have moved so far that a
-/// vertex could touch a triangle outside of its reach. A block whose pairs have gaps of at least `d` is skipped until
-/// vertices have moved by `d`, and the positions of vertices far from all pairs are not computed.
+/// near each vertex, the third puts the pairs into blocks. The search is repeated when a vertex could touch a triangle
+/// outside of its reach: the motion of nodes bounds that of vertices, and where the bound is reached, the first step
+/// measures how far vertices have approached each other and goes on without a search if that is much less. A block
+/// whose pairs have gaps of at least `d` is skipped until vertices have moved by `d`, and the positions of vertices far
+/// from all pairs are not computed.
 ///
 /// In prepare_step() the threads compute the positions of the vertices. In before_step() each thread finds the forces
 /// of its part of the pairs, and in add_forces() it adds the forces on the nodes of its planes in the order of the
@@ -61,7 +63,7 @@ private:
 
   enum class Stage : std::int32_t
   {
-    sort,     // sort triangles in the next step
+    sort,     // sort triangles in the next step if vertices have approached each other so far that a search is due
     search,   // search among the triangles in the step after `sort`
     collect,  // collect the pairs that were found at the start of the step after `search`
     hold
@@ -106,6 +108,7 @@ private:
     return { pair_vertices_, pairs_, forces_, due_, touches_, moved_in(moved_), this, blocks };
   }
   double way_now() const;
+  double approached() const;
   bool rests() const { return clock_[0].stage == Stage::hold && way_now() < clock_[0].earliest; }
   Vector place(std::size_t v, const Moved& moved) const;
   Vector normal(std::size_t v, const Moved& moved) const;
@@ -151,6 +154,7 @@ private:
   std::vector<PairBlock<Real>> pairs_;
   std::vector<double> due_;  // value of Clock::way at which a block of pairs is evaluated again
   std::vector<Found> found_;
+  std::vector<Real> searched_;    // displacements of vertices at the latest search, in three lists [m]
   std::vector<Clock> clock_;      // the vector has one entry
   std::vector<double> node_way_;  // longest displacement of a bound node in the latest step, one per plane of nodes [m]
   std::vector<double> lost_;      // energy lost to friction, one per plane of voxels [J]

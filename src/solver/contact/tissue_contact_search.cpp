@@ -130,21 +130,17 @@ template <class Real>
 void TissueContact<Real>::sort_triangles()
 {
   const Moved moved = moved_in(moved_);
-  std::vector<Vector> centres;
-  centres.reserve(surface_.triangles.size());
-  double largest = 0;
+  std::vector<TriangleGrid::Triangle> triangles;
+  triangles.reserve(surface_.triangles.size());
   for (const auto& triangle : surface_.triangles)
   {
     const Vector a = place(triangle.vertex[0], moved), b = place(triangle.vertex[1], moved),
                  c = place(triangle.vertex[2], moved);
-    centres.push_back((1.0 / 3) * (a + b + c));
-    for (const Vector* const corner : { &a, &b, &c })
-    {
-      const Vector way = *corner - centres.back();
-      largest = std::max(largest, dot(way, way));
-    }
+    const Vector centre = (1.0 / 3) * (a + b + c);
+    const double radius = std::max({ norm(a - centre), norm(b - centre), norm(c - centre) });
+    triangles.push_back({ centre, touch_search::margin * radius });
   }
-  grid_.build(touch_search::margin * (reach_ + std::sqrt(largest)), centres);
+  grid_.build(touch_search::margin * reach_, triangles);
 }
 
 // Returns the nearest triangles that a vertex may touch, at most `most_pairs`, of which no two share a corner.
@@ -158,7 +154,7 @@ typename TissueContact<Real>::Found TissueContact<Real>::search(std::size_t p)
              [&](std::int32_t t)
              {
                double gap;
-               if (!touch_search::may_touch(view, static_cast<std::int32_t>(p), t, reach_, grid_.reach(), gap))
+               if (!touch_search::may_touch(view, static_cast<std::int32_t>(p), t, reach_, grid_.edge(), gap))
                  return;
                // If t is nearer, it replaces the triangle found so far that shares a corner with t or, if none does,
                // the farthest triangle found so far.

@@ -12,7 +12,7 @@ void TriangleGrid::resize(std::size_t count)
   while (buckets < count)
     buckets *= 2;
   begin_.assign(buckets + 1, 0);
-  entries_.assign(count, 0);
+  entries_.assign(count, {});
   edge_[0] = 1;
 }
 
@@ -23,22 +23,28 @@ void TriangleGrid::list_arrays(ArrayList& list, Effect effect)
   list.add_state(effect, "grid", entries_);
 }
 
-void TriangleGrid::build(double reach, const std::vector<Vector>& points)
+void TriangleGrid::build(double reach, const std::vector<Triangle>& triangles)
 {
-  edge_[0] = reach;
+  double largest = 0;
+  for (const Triangle& triangle : triangles)
+    largest = std::max(largest, triangle.radius);
+  edge_[0] = reach + largest;
   std::fill(begin_.begin(), begin_.end(), 0);
   std::vector<std::int32_t> bucket;
-  bucket.reserve(points.size());
-  for (const Vector& p : points)
+  bucket.reserve(triangles.size());
+  for (const Triangle& triangle : triangles)
   {
-    const auto [i, j, k] = cell(p);
+    const auto [i, j, k] = cell(triangle.centre);
     bucket.push_back(static_cast<std::int32_t>(hash(i, j, k)));
     ++begin_[bucket.back() + 1];
   }
   std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
   std::vector<std::int32_t> next(begin_.begin(), begin_.end() - 1);
-  for (std::size_t n = 0; n < points.size(); ++n)
-    entries_[next[bucket[n]]++] = static_cast<std::int32_t>(n);
+  for (std::size_t n = 0; n < triangles.size(); ++n)
+  {
+    const auto& [centre, radius] = triangles[n];
+    entries_[next[bucket[n]]++] = { single(centre), static_cast<float>(reach + radius), static_cast<std::int32_t>(n) };
+  }
 }
 
 }  // namespace frontalis

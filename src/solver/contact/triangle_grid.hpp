@@ -12,23 +12,29 @@
 namespace frontalis
 {
 
-/// A uniform grid of points. Its cells are hashed into a table, so that memory does not grow with the extent of the
-/// points.
+/// A uniform grid of triangles, sorted by the centres of the balls around them. Its cells are hashed into a table, so
+/// that memory does not grow with the extent of the triangles.
 class TriangleGrid
 {
 public:
   using Vector = physics::Vec3<double>;
+  struct Triangle
+  {
+    Vector centre;
+    double radius;  // of the ball [m]
+  };
 
   void resize(std::size_t count);
   void list_arrays(ArrayList& list, Effect effect);
-  /// Sorts points into cells with edges of the length `reach` [m].
-  void build(double reach, const std::vector<Vector>& points);
-  double reach() const { return edge_[0]; }
-  /// Calls visit(index) for all points within the reach of p, and also for some farther points; may visit a point
-  /// twice.
+  /// Sorts triangles into cells that are as long as `reach` [m] and the largest radius together.
+  void build(double reach, const std::vector<Triangle>& triangles);
+  /// Edge of a cell [m].
+  double edge() const { return edge_[0]; }
+  /// Calls visit(index) for all triangles whose balls are within the reach of p; may visit a triangle twice.
   template <class Visit>
   void near(const Vector& p, const Visit& visit) const
   {
+    const std::array<float, 3> at = single(p);
     const auto [i, j, k] = cell(p);
     for (std::int64_t z = k - 1; z <= k + 1; ++z)
       for (std::int64_t y = j - 1; y <= j + 1; ++y)
@@ -36,11 +42,24 @@ public:
         {
           const std::size_t bucket = hash(x, y, z);
           for (auto e = begin_[bucket]; e < begin_[bucket + 1]; ++e)
-            visit(entries_[e]);
+          {
+            const Entry& entry = entries_[e];
+            const float dx = entry.centre[0] - at[0], dy = entry.centre[1] - at[1], dz = entry.centre[2] - at[2];
+            if (dx * dx + dy * dy + dz * dz <= entry.farthest * entry.farthest)
+              visit(entry.index);
+          }
         }
   }
 
 private:
+  struct Entry
+  {
+    std::array<float, 3> centre;
+    float farthest;  // distance from the centre within which the triangle is visited [m]
+    std::int32_t index;
+  };
+
+  static std::array<float, 3> single(const Vector& p) { return { { float(p.x), float(p.y), float(p.z) } }; }
   std::array<std::int64_t, 3> cell(const Vector& p) const
   {
     // Coordinates that are not finite count as cell 0.
@@ -55,7 +74,7 @@ private:
 
   std::vector<double> edge_ = std::vector<double>(1, 1.0);  // edge of a cell [m]; the vector has one entry
   std::vector<std::int32_t> begin_;  // start of each bucket; the number of buckets is a power of 2
-  std::vector<std::int32_t> entries_;
+  std::vector<Entry> entries_;
 };
 
 }  // namespace frontalis
