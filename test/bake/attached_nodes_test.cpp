@@ -173,8 +173,9 @@ TEST(AttachedNodes, AreThoseOfTheSurfaceInTheCrop)
     const double on_surface = p[2] * radius / std::hypot(p[0], p[1], p[2]);
     if (std::abs(on_surface - edge) < 0.02e-3)
       continue;
-    EXPECT_EQ(node.surface<0, on_surface> edge) << on_surface << " " << p[2];
-    across += (p[2] > edge) != (on_surface > edge) ? 1 : 0;
+    const bool above = on_surface > edge;
+    EXPECT_EQ(node.surface < 0, above) << on_surface << " " << p[2];
+    across += (p[2] > edge) != above ? 1 : 0;
   }
   EXPECT_GT(across, 5u);
 

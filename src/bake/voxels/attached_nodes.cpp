@@ -134,8 +134,8 @@ public:
   ///
   /// Extrapolation from a master at the height d above the surface and the distance l beside the nearest point of the
   /// surface errs by about d / 2D + l / L of the displacement, where strain vanishes at the depth D and displacements
-  /// vary along the surface over the length L. The master has the least d^2 / 2 + l^2, which has the least sum of
-  /// squares for L = 1.4 D. More weight of d suits wide layers, less weight suits thin bars in torsion.
+  /// vary along the surface over the length L. The master has the least d^2 / 2 + l^2, which is the least sum of the
+  /// squares of both for L = 1.4 D. More weight of d would suit wide layers, and less weight thin bars in torsion.
   bool find(Candidate& candidate)
   {
     tissue_.begin_at(candidate.node.node);

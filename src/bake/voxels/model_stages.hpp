@@ -102,9 +102,9 @@ bool attaches(const Scene& scene, const SceneConstraint& constraint);
 std::vector<const PreparedSurface*> attaching_surfaces(const Scene& scene, const PreparedSurfaces& surfaces);
 
 /// With `boundary: true`, turns rigid and sliding nodes of constraints without `within` into attached nodes. The master
-/// of a node is a free node near the point of the surface that is closest to the node, low above the surface rather
-/// than straight above that point. If there is none, the tissue is too thin: nodes up to half an edge above the surface
-/// stay restricted, and the others become free. Nodes that slide with friction are not attached.
+/// of a node is a free node above the surface, near the point of the surface that is closest to the node. If there is
+/// none, the tissue is too thin: nodes up to half an edge above the surface stay restricted, and the others become
+/// free. Nodes that slide with friction are not attached.
 void attach_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,
                   BakeMonitor& monitor);
 
