@@ -33,9 +33,14 @@ Scene layer_scene(double depth, SceneConstraint::Kind kind)
   return scene;
 }
 
+Vector3 scene_position(const Model& model, std::int32_t node)
+{
+  return transformed(model.to_scene, node_position(model, node));
+}
+
 double height(const Model& model, std::int32_t node)
 {
-  const Vector3 p = transformed(model.to_scene, node_position(model, node));
+  const Vector3 p = scene_position(model, node);
   return std::hypot(p[0], p[1], p[2]) - radius;
 }
 
@@ -111,13 +116,90 @@ TEST(CutVoxels, KnowTheCentroidsOfTheirTissue)
   EXPECT_TRUE(bake(staircase).tissue_centre.empty());
 }
 
+TEST(AttachedNodes, FollowLowNodes)
+{
+  for (const auto kind : { SceneConstraint::Kind::rigid, SceneConstraint::Kind::sliding })
+  {
+    const Model model = bake(layer_scene(8e-3, kind));
+    double sum = 0;
+    for (const AttachedNode& node : model.attached)
+    {
+      const double of_master = height(model, node.master);
+      sum += of_master;
+      EXPECT_LT(of_master, 4e-3);
+      // The master is less than the diagonal of a voxel's face beside the nearest point of the surface.
+      const Vector3 own = scene_position(model, node.node), other = scene_position(model, node.master);
+      double along = 0;
+      for (std::size_t a = 0; a < 3; ++a)
+        along += own[a] * other[a] / std::hypot(own[0], own[1], own[2]);
+      EXPECT_LT(std::sqrt(std::pow(of_master + radius, 2) - along * along), 2.9e-3);
+    }
+    EXPECT_LT(sum / static_cast<double>(model.attached.size()), 2.5e-3);
+  }
+}
+
+TEST(AttachedNodes, NeedLittleMoreThanAVoxelOfTissue)
+{
+  for (const auto kind : { SceneConstraint::Kind::rigid, SceneConstraint::Kind::sliding })
+  {
+    BakeReport report;
+    const Model model = bake(layer_scene(2.4e-3, kind), &report);
+    EXPECT_FALSE(model.attached.empty());
+    EXPECT_TRUE(model.rigid.empty());
+    EXPECT_TRUE(model.sliding.empty());
+    EXPECT_TRUE(std::none_of(report.findings.begin(), report.findings.end(),
+                             [](const std::string& finding) { return finding.rfind("boundary: tissue", 0) == 0; }));
+  }
+}
+
+// A constraint attaches tissue at the part of its surface that lies in its crop, wherever the nodes above and below
+// that part are.
+TEST(AttachedNodes, AreThoseOfTheSurfaceInTheCrop)
+{
+  const double edge = 0.8 * radius;
+  Scene scene = layer_scene(8e-3, SceneConstraint::Kind::sliding);
+  SceneConstraint held = scene.constraints[0];
+  held.name = "held";
+  held.kind = SceneConstraint::Kind::rigid;
+  held.crop.lower[2] = scene.constraints[0].crop.upper[2] = edge;
+  scene.constraints.push_back(held);
+  const Model model = bake(scene);
+  EXPECT_TRUE(model.rigid.empty());
+  EXPECT_TRUE(model.sliding.empty());
+  std::size_t across = 0;  // nodes that are on the other side of the crop's plane than their points on the surface
+  for (const AttachedNode& node : model.attached)
+  {
+    const Vector3 p = scene_position(model, node.node);
+    const double on_surface = p[2] * radius / std::hypot(p[0], p[1], p[2]);
+    if (std::abs(on_surface - edge) < 0.02e-3)
+      continue;
+    const bool above = on_surface > edge;
+    EXPECT_EQ(node.surface < 0, above) << on_surface << " " << p[2];
+    across += (p[2] > edge) != above ? 1 : 0;
+  }
+  EXPECT_GT(across, 5u);
+
+  // What is restricted where it is has its own place in the crop.
+  scene.accuracy.boundary = "staircase";
+  const Model staircase = bake(scene);
+  for (const RigidNode& node : staircase.rigid)
+    EXPECT_GE(scene_position(staircase, node.node)[2], edge);
+  for (const SlidingNode& node : staircase.sliding)
+    EXPECT_LE(scene_position(staircase, node.node)[2], edge);
+}
+
+// Tissue in one sheet of voxels, whose upper nodes are less than 0.75 edges above the bone, has no masters.
 TEST(AttachedNodes, AreHeldWhereTissueIsTooThin)
 {
+  Scene scene = layer_scene(8e-3, SceneConstraint::Kind::rigid);
+  scene.surfaces = { box_surface("ball", { 10e-3, 10e-3, -1.95e-3 }, { 60e-3, 60e-3, 6.1e-3 }),
+                     box_surface("skin", { 10e-3, 10e-3, 0.95e-3 }, { 20e-3, 20e-3, 1.9e-3 }) };
   BakeReport report;
-  const Model model = bake(layer_scene(2e-3, SceneConstraint::Kind::rigid), &report);
+  const Model model = bake(scene, &report);
+  EXPECT_TRUE(model.attached.empty());
   EXPECT_FALSE(model.rigid.empty());
   for (const RigidNode& node : model.rigid)
-    EXPECT_LT(height(model, node.node), 1.01e-3);
+    EXPECT_LT(scene_position(model, node.node)[2] - 1.1e-3, 1.01e-3);
   EXPECT_TRUE(std::any_of(report.findings.begin(), report.findings.end(),
                           [](const std::string& finding) { return finding.rfind("boundary: tissue", 0) == 0; }));
 }

@@ -8,17 +8,12 @@
 #include <map>
 #include <numeric>
 #include <optional>
+#include <tuple>
 
 namespace frontalis
 {
 namespace
 {
-
-bool attaches(const Scene& scene, const SceneConstraint& constraint)
-{
-  // A constraint with a `within` of its own restricts its nodes instead of attaching tissue at the surface.
-  return scene.accuracy.boundary == "true" && constraint.restricts_nodes() && constraint.within < 0;
-}
 
 /// A node and the surface that it is to be attached to.
 struct Candidate
@@ -62,15 +57,6 @@ public:
     found_.clear();
     rings_ = 0;
   }
-  /// Vector from the node towards the middle of the voxels around it [m]; 0 in models without flaps.
-  Vector3d inwards() const
-  {
-    Vector3d sum(0, 0, 0);
-    for (const std::int32_t voxel : around())
-      for (const std::int32_t corner : model_.voxel_nodes[voxel])
-        sum += to_vector(rest_position(model_, corner)) - to_vector(rest_position(model_, node_));
-    return sum.isZero() ? sum : Vector3d(sum / (8.0 * static_cast<double>(around().size())));
-  }
   bool reaches(std::int32_t voxel)
   {
     if (one_.empty())
@@ -85,10 +71,6 @@ public:
   }
 
 private:
-  std::vector<std::int32_t> around() const
-  {
-    return one_.empty() ? std::vector<std::int32_t>() : voxels_of_[one_[node_]];
-  }
   // Adds the voxels around the node, or those that share nodes with voxels of the latest ring.
   void add_ring()
   {
@@ -132,6 +114,8 @@ public:
         edge_(spacing_.maxCoeff()),
         restricted_(model.nodes.size(), false)
   {
+    for (int axis = 0; axis < 3; ++axis)
+      reach_[axis] = static_cast<std::int32_t>(std::ceil(2.5 * edge_ / spacing_[axis]));
     mark(model.rigid);
     mark(model.sliding);
     mark(model.prescribed);
@@ -147,21 +131,37 @@ public:
   double edge() const { return edge_; }
 
   /// Fills the candidate's master and ratio. Returns whether there is a master.
+  ///
+  /// Extrapolation from a master at the height d above the surface and the distance l beside the nearest point of the
+  /// surface errs by about d / 2D + l / L of the displacement, where strain vanishes at the depth D and displacements
+  /// vary along the surface over the length L. The master has the least d^2 / 2 + l^2, which is the least sum of the
+  /// squares of both for L = 1.4 D. More weight of d would suit wide layers, and less weight thin bars in torsion.
   bool find(Candidate& candidate)
   {
     tissue_.begin_at(candidate.node.node);
-    // The foot is moved a little inwards, because the node may be on the wall of a gap.
-    const Vector3d foot = rest(candidate.node.node) - candidate.distance * candidate.normal + 1e-3 * tissue_.inwards();
-    for (double height = 1; height < 3.1; height += 0.25)
+    const Vector3d foot = rest(candidate.node.node) - candidate.distance * candidate.normal;
+    corners_.clear();
+    const VoxelPlace middle = cell_of(foot);
+    VoxelPlace place{};
+    for (place[2] = middle[2] - reach_[2]; place[2] <= middle[2] + reach_[2]; ++place[2])
+      for (place[1] = middle[1] - reach_[1]; place[1] <= middle[1] + reach_[1]; ++place[1])
+        for (place[0] = middle[0] - reach_[0]; place[0] <= middle[0] + reach_[0]; ++place[0])
+          for (std::int32_t voxel = index_.find(place); voxel >= 0; voxel = index_.another(voxel))
+            add_corners(voxel, foot, candidate.normal);
+    std::sort(corners_.begin(), corners_.end());
+    for (const auto& [squares, master, voxel] : corners_)
     {
-      const Vector3d y = foot + height * edge_ * candidate.normal;
-      const Vector3d cell = (y.cwiseQuotient(spacing_).array() + 1e-9).floor();
-      if (take({ { static_cast<std::int32_t>(cell[0]), static_cast<std::int32_t>(cell[1]),
-                   static_cast<std::int32_t>(cell[2]) } },
-               y, candidate))
-        return true;
+      if (!tissue_.reaches(voxel))
+        continue;
+      const double height = distance(candidate, master);
+      // A free node is close to the surface only where a crop ends the constraint.
+      if (!(height >= 0.5 * edge_))
+        continue;
+      candidate.node.master = master;
+      candidate.node.ratio = std::clamp(candidate.distance / height, -1.0, 1.0);
+      return true;
     }
-    return find_beside(foot + 1.5 * edge_ * candidate.normal, candidate);
+    return false;
   }
 
   /// Distance of a node from the candidate's surface, positive in the tissue [m]; NaN where it is unknown.
@@ -184,50 +184,25 @@ private:
 
   Vector3d rest(std::int32_t node) const { return to_vector(rest_position(model_, node)); }
 
-  /// Takes a master from the nearest voxel whose corners are free, within 2.5 edges of a point above the surface.
-  bool find_beside(const Vector3d& above, Candidate& candidate)
+  VoxelPlace cell_of(const Vector3d& local) const
   {
-    constexpr std::int32_t reach = 3;
-    std::vector<std::pair<double, VoxelPlace>> places;
-    for (std::int32_t k = -reach; k <= reach; ++k)
-      for (std::int32_t j = -reach; j <= reach; ++j)
-        for (std::int32_t i = -reach; i <= reach; ++i)
-        {
-          const Vector3d cell = above.cwiseQuotient(spacing_).array().floor() + Eigen::Array3d(i, j, k);
-          const Vector3d lower = cell.cwiseProduct(spacing_);
-          const double squared = Box(lower, lower + spacing_).squaredExteriorDistance(above);
-          if (squared < 2.5 * 2.5 * edge_ * edge_)
-            places.push_back({ squared,
-                               { { static_cast<std::int32_t>(cell[0]), static_cast<std::int32_t>(cell[1]),
-                                   static_cast<std::int32_t>(cell[2]) } } });
-        }
-    std::sort(places.begin(), places.end());
-    return std::any_of(places.begin(), places.end(),
-                       [&](const auto& place) { return take(place.second, above, candidate); });
+    const Vector3d cell = (local.cwiseQuotient(spacing_).array() + 1e-9).floor();
+    return { { static_cast<std::int32_t>(cell[0]), static_cast<std::int32_t>(cell[1]),
+               static_cast<std::int32_t>(cell[2]) } };
   }
 
-  /// Takes the corner nearest to y of the voxel at `place` as the master. Returns false if a corner of the voxel is
-  /// restricted, or the master would be too close to the surface.
-  bool take(const VoxelPlace& place, const Vector3d& y, Candidate& candidate)
+  /// Adds the free corners of a voxel that are above the surface and within 2.5 edges of the foot.
+  void add_corners(std::int32_t voxel, const Vector3d& foot, const Vector3d& normal)
   {
-    std::int32_t voxel = index_.find(place);
-    while (voxel >= 0 && !tissue_.reaches(voxel))
-      voxel = index_.another(voxel);
-    if (voxel < 0)
-      return false;
-    const auto& corners = model_.voxel_nodes[voxel];
-    if (std::any_of(corners.begin(), corners.end(), [&](std::int32_t n) { return restricted_[n]; }))
-      return false;
-    const std::int32_t master = *std::min_element(
-        corners.begin(), corners.end(),
-        [&](std::int32_t a, std::int32_t b) { return (rest(a) - y).squaredNorm() < (rest(b) - y).squaredNorm(); });
-    // A free corner is close to the surface only where a crop ends the constraint.
-    const double height = distance(candidate, master);
-    if (!(height >= 0.5 * edge_))
-      return false;
-    candidate.node.master = master;
-    candidate.node.ratio = std::clamp(candidate.distance / height, -1.0, 1.0);
-    return true;
+    for (const std::int32_t node : model_.voxel_nodes[voxel])
+    {
+      if (restricted_[node])
+        continue;
+      const Vector3d from_foot = rest(node) - foot;
+      const double squared = from_foot.squaredNorm(), height = from_foot.dot(normal);
+      if (height > 0 && squared < 2.5 * 2.5 * edge_ * edge_)
+        corners_.emplace_back(squared - 0.5 * height * height, node, voxel);
+    }
   }
 
   const LocalFrame& frame_;
@@ -236,7 +211,10 @@ private:
   VoxelIndex index_;
   Vector3d spacing_;
   double edge_;
+  VoxelPlace reach_{};  ///< cells to look at on each side of the foot's cell
   std::vector<bool> restricted_;
+  /// possible masters of a node: the sum of squares of find(), the master and its voxel
+  std::vector<std::tuple<double, std::int32_t, std::int32_t>> corners_;
 };
 
 /// Finds the candidates among a model's rigid and sliding nodes.
@@ -323,6 +301,11 @@ private:
 
 }  // namespace
 
+bool attaches(const Scene& scene, const SceneConstraint& constraint)
+{
+  return scene.accuracy.boundary == "true" && constraint.restricts_nodes() && constraint.within < 0;
+}
+
 std::vector<const PreparedSurface*> attaching_surfaces(const Scene& scene, const PreparedSurfaces& surfaces)
 {
   std::vector<const PreparedSurface*> found;
@@ -368,7 +351,7 @@ void attach_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const Lo
             [](const AttachedNode& a, const AttachedNode& b) { return a.node < b.node; });
   if (held + freed > 0)
     monitor.found(
-        "boundary: tissue is less than about two voxels deep at {} of {} nodes near bones; those up to half a voxel "
+        "boundary: tissue is less than about a voxel deep at {} of {} nodes near bones; those up to half a voxel "
         "above the bone are held there ({}), the others are free ({})",
         held + freed, held + freed + model.attached.size(), held, freed);
   for (const ConstraintSurface& surface : model.constraint_surfaces)

@@ -93,14 +93,18 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
 std::vector<std::size_t> origin_nodes(std::size_t muscle, const MuscleFibres& fibres, const std::vector<bool>& near,
                                       const LocalFrame& frame, const Model& model);
 
+/// Whether a constraint attaches tissue at its surfaces: with `boundary: true`, and without a `within` of its own,
+/// which restricts the nodes themselves.
+bool attaches(const Scene& scene, const SceneConstraint& constraint);
+
 /// With `boundary: true`, the surfaces at which rigid and sliding constraints attach tissue: the surfaces of
 /// constraints without a `within` of their own.
 std::vector<const PreparedSurface*> attaching_surfaces(const Scene& scene, const PreparedSurfaces& surfaces);
 
 /// With `boundary: true`, turns rigid and sliding nodes of constraints without `within` into attached nodes. The master
-/// of a node is a corner of the first voxel with free corners only, one to three voxel edges above the surface along
-/// its normal, or of another such voxel near it. If there is none, the tissue is too thin: nodes up to half an edge
-/// above the surface stay restricted, and the others become free. Nodes that slide with friction are not attached.
+/// of a node is a free node above the surface, near the point of the surface that is closest to the node. If there is
+/// none, the tissue is too thin: nodes up to half an edge above the surface stay restricted, and the others become
+/// free. Nodes that slide with friction are not attached.
 void attach_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,
                   BakeMonitor& monitor);
 

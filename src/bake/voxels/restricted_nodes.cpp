@@ -35,8 +35,9 @@ public:
           voxels_of_[n].push_back(e);
   }
 
-  /// Distances of nodes from a surface of a constraint or a load. A `within` below 0 means the default.
-  Distances find(const PreparedSurface& surface, double within, const Region& crop)
+  /// Distances of nodes from a surface of a constraint or a load. A `within` below 0 means the default. The crop takes
+  /// those nodes that lie in it or, with `crop_surface`, those whose closest point on the surface does.
+  Distances find(const PreparedSurface& surface, double within, const Region& crop, bool crop_surface = false)
   {
     const double reach = reach_of(within);
     const double side = tissue_side(surface);
@@ -47,10 +48,11 @@ public:
                  [&](std::size_t n)
                  {
                    const Vector3d& p = positions_[n];
-                   if (!box.contains(p) || surface.box().squaredExteriorDistance(p) > bound * bound)
+                   if (box.squaredExteriorDistance(p) > (crop_surface ? bound * bound : 0) ||
+                       surface.box().squaredExteriorDistance(p) > bound * bound)
                      return;
                    const ClosestPoint closest = surface.tree().closest(p, bound);
-                   if (closest.triangle < 0)
+                   if (closest.triangle < 0 || (crop_surface && !box.contains(closest.point)))
                      return;
                    // accept farther nodes on the far side of the surface, but not those beside an open surface
                    const double height = (p - closest.point).dot(surface.pseudonormal(closest));
@@ -147,14 +149,14 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
   // calls restrict(node, distance, surface) for the nodes that surfaces of a constraint or a load restrict; with
   // `slides`, `surface` is the sheet of the surface that faces tissue
   const auto for_each_node = [&](const std::string& place, const std::vector<std::string>& names, const auto& part,
-                                 const auto& restrict, bool slides = false)
+                                 const auto& restrict, bool slides = false, bool crop_surface = false)
   {
     bool any = false;
     for (const std::string& name : names)
     {
       const PreparedSurface& whole = named_surface(surfaces, name, place);
       const PreparedSurface& surface = slides ? finder.sheet_of(whole, bones) : whole;
-      const Distances distances = finder.find(surface, part.within, part.crop);
+      const Distances distances = finder.find(surface, part.within, part.crop, crop_surface);
       for (std::size_t n = 0; n < nodes; ++n)
       {
         if (std::isnan(distances[n]))
@@ -178,8 +180,9 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
     const std::int32_t bone = bone_of(constraint, model);
     const std::string place = place_in_scene(scene, "constraint", constraint);
     std::vector<bool> near(nodes, false);
-    for_each_node(place, constraint.surfaces, constraint,
-                  [&](std::size_t n, double, const PreparedSurface&) { near[n] = true; });
+    for_each_node(
+        place, constraint.surfaces, constraint, [&](std::size_t n, double, const PreparedSurface&) { near[n] = true; },
+        false, attaches(scene, constraint));
     std::vector<bool> held = constraint.of.empty() ? near : std::vector<bool>(nodes, false);
     for (const std::string& name : constraint.of)
     {
@@ -263,7 +266,7 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
           if (known.kind < Kind::sliding || (known.kind == Kind::sliding && std::abs(d) < std::abs(known.distance)))
             restrictions[n] = { Kind::sliding, index, static_cast<std::int32_t>(c), d };
         },
-        true);
+        true, attaches(scene, constraint));
   }
 
   // Nodes may also slide on to bones that hold other nodes rigidly: add the sheets of these bones.

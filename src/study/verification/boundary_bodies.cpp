@@ -172,7 +172,7 @@ BoundaryBody curved_layer(double thickness, double poisson, bool slides, bool st
   body.scene.constraints = { constraint_at("base",
                                            slides ? SceneConstraint::Kind::sliding : SceneConstraint::Kind::rigid) };
   if (!stiff)
-    body.bounds = { { 0.03, 0.015 } };
+    body.bounds = { { 0.02, 0.01 } };
   body.converges = !(stiff && slides);
   // Gravity is so weak that strains are about 1e-4.
   const double gravity = slides ? 0.1 : 1;

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <sstream>
 
@@ -131,7 +130,7 @@ FittedLayer fitted_layer(bool mixed)
     held.crop.lower[2] = body.scene.constraints[0].crop.upper[2] = held_above * inner;
     body.scene.constraints.push_back(held);
   }
-  body.bounds = { { std::nan(""), 0.01 } };  // at 2 mm the error is above the 2 % that a layer should have
+  body.bounds = { { 0.02, 0.01 } };
   const Arc arc = solve_layer(mixed, gravity, 8);
   layer.mesh_error = relative_difference(solve_layer(mixed, gravity, 4), arc);
   body.exact = [arc](const Point& p) -> Point
