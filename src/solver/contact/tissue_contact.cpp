@@ -20,9 +20,6 @@ using Vector = physics::Vec3<double>;
 // pair is checked again when the vertex has moved by this multiple of the shortest voxel edge.
 constexpr double patience = 0.02;
 
-// The search is repeated when less than this share is left of the way by which vertices may approach triangles.
-constexpr double least_left = 0.25;
-
 // The range of blocks that a thread processes.
 std::pair<std::int32_t, std::int32_t> part_of(std::size_t blocks, const NodeShare& share)
 {
@@ -134,7 +131,7 @@ void TissueContact<Real>::reset()
   due_.assign(blocks, 0);
   touches_.assign(blocks, 0);
   found_.assign(count, {});
-  searched_.assign(3 * count, std::numeric_limits<Real>::quiet_NaN());
+  searched_.assign(3 * count, 0);
   clock_.assign(1, {});
   node_way_.assign(planes + 1, 0);
   lost_.assign(planes, 0);
@@ -180,31 +177,6 @@ double TissueContact<Real>::way_now() const
   return clock_[0].way + 2 * nodes_.spread() * *std::max_element(node_way_.begin(), node_way_.end());
 }
 
-// Returns an upper bound of the distance by which a vertex and a triangle have approached each other since the latest
-// search [m]: the diagonal of the box that contains the ways of all vertices, so that a motion which they have in
-// common does not count. Not a number before the first search.
-template <class Real>
-double TissueContact<Real>::approached() const
-{
-  const std::size_t count = surface_.vertices.size();
-  Vector diagonal{ 0, 0, 0 };
-  double* const length[3] = { &diagonal.x, &diagonal.y, &diagonal.z };
-  for (std::size_t axis = 0; axis < 3; ++axis)
-  {
-    const Real* const now = moved_.data() + 6 * stride() + axis;
-    const Real* const then = searched_.data() + axis * count;
-    Real least = now[0] - then[0], most = least;
-    for (std::size_t v = 1; v < count; ++v)
-    {
-      const Real way = now[v * Moved::stride] - then[v];
-      least = std::min(least, way);
-      most = std::max(most, way);
-    }
-    *length[axis] = double(most) - double(least);
-  }
-  return norm(diagonal);
-}
-
 template <class Real>
 void TissueContact<Real>::prepare_step(const NodeShare& share, const Real* const u[3])
 {
@@ -235,33 +207,7 @@ void TissueContact<Real>::before_step(const NodeShare& share, const Real* const 
     next_ = clock_[0];
     next_.way = way;
     next_.dt = step.dt;
-    if (stage == Stage::hold && way >= next_.renewal)
-      next_.stage = Stage::sort;
-    const double farthest = touch_search::renewal_share * reach_;
-    if (stage == Stage::sort)
-    {
-      const double left = farthest - approached();
-      if (left > least_left * farthest)
-      {
-        next_.stage = Stage::hold;
-        next_.renewal = way + left;
-      }
-      else
-      {
-        sort_triangles();
-        next_.stage = Stage::search;
-      }
-    }
-    if (stage == Stage::search)
-    {
-      next_.stage = Stage::collect;
-      next_.renewal = way + farthest;
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        for (std::size_t v = 0; v < surface_.vertices.size(); ++v)
-          searched_[axis * surface_.vertices.size() + v] = moved_[6 * stride() + v * Moved::stride + axis];
-    }
-    if (stage == Stage::collect)
-      next_.stage = Stage::hold;
+    choose_stage(stage, way);
   }
   if (rests())
     return;

@@ -63,8 +63,9 @@ private:
 
   enum class Stage : std::int32_t
   {
-    sort,     // sort triangles in the next step if vertices have approached each other so far that a search is due
-    search,   // search among the triangles in the step after `sort`
+    check,    // if vertices have approached each other so far that a search is due, go on as in `sort`
+    sort,     // sort triangles
+    search,   // search among the triangles, in the step after they were sorted
     collect,  // collect the pairs that were found at the start of the step after `search`
     hold
   };
@@ -108,7 +109,8 @@ private:
     return { pair_vertices_, pairs_, forces_, due_, touches_, moved_in(moved_), this, blocks };
   }
   double way_now() const;
-  double approached() const;
+  double approached();
+  void choose_stage(Stage stage, double way);
   bool rests() const { return clock_[0].stage == Stage::hold && way_now() < clock_[0].earliest; }
   Vector place(std::size_t v, const Moved& moved) const;
   Vector normal(std::size_t v, const Moved& moved) const;
@@ -154,7 +156,7 @@ private:
   std::vector<PairBlock<Real>> pairs_;
   std::vector<double> due_;  // value of Clock::way at which a block of pairs is evaluated again
   std::vector<Found> found_;
-  std::vector<Real> searched_;    // displacements of vertices at the latest search, in three lists [m]
+  std::vector<Real> searched_;    // displacements of vertices at the latest search, three numbers each [m]
   std::vector<Clock> clock_;      // the vector has one entry
   std::vector<double> node_way_;  // longest displacement of a bound node in the latest step, one per plane of nodes [m]
   std::vector<double> lost_;      // energy lost to friction, one per plane of voxels [J]

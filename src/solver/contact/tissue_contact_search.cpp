@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace frontalis
 {
@@ -14,6 +15,9 @@ using Vector = physics::Vec3<double>;
 
 // Around the triangle of a pair, the corners of this many rings of triangles also get positions in each step.
 constexpr int rings = 3;
+
+// The search is repeated when less than this share is left of the way by which vertices may approach triangles.
+constexpr double least_left = 0.25;
 
 template <class Real>
 Vector record(const Real* records, std::size_t v)
@@ -143,6 +147,52 @@ void TissueContact<Real>::sort_triangles()
   grid_.build(touch_search::margin * reach_, triangles);
 }
 
+// Returns an upper bound of the distance by which a vertex and a triangle have approached each other since the latest
+// search [m]: the diagonal of the box that contains the ways of all vertices, so that a motion which they have in
+// common does not count.
+template <class Real>
+double TissueContact<Real>::approached()
+{
+  const Moved moved = moved_in(moved_);
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  Vector least{ infinity, infinity, infinity }, most = -1.0 * least;
+  for (std::size_t v = 0; v < surface_.vertices.size(); ++v)
+  {
+    const Real* const then = searched_.data() + 3 * v;
+    const Vector way = record(moved.record, v) - Vector{ double(then[0]), double(then[1]), double(then[2]) };
+    least = { std::min(least.x, way.x), std::min(least.y, way.y), std::min(least.z, way.z) };
+    most = { std::max(most.x, way.x), std::max(most.y, way.y), std::max(most.z, way.z) };
+  }
+  return norm(most - least);
+}
+
+// Sets the stage of the next step, and sorts triangles if it is a search. `way`: Clock::way at this step.
+template <class Real>
+void TissueContact<Real>::choose_stage(Stage stage, double way)
+{
+  const double farthest = touch_search::renewal_share * reach_;
+  if (stage == Stage::hold && way >= next_.renewal)
+    next_.stage = Stage::check;
+  if (stage == Stage::check || stage == Stage::sort)
+  {
+    const double left = stage == Stage::check ? farthest - approached() : 0;
+    next_.stage = left > least_left * farthest ? Stage::hold : Stage::search;
+    next_.renewal = way + left;
+    if (next_.stage == Stage::search)
+      sort_triangles();
+  }
+  if (stage == Stage::search)
+  {
+    next_.stage = Stage::collect;
+    next_.renewal = way + farthest;
+    const Moved moved = moved_in(moved_);
+    for (std::size_t v = 0; v < surface_.vertices.size(); ++v)
+      std::copy_n(moved.record + v * Moved::stride, 3, searched_.data() + 3 * v);
+  }
+  if (stage == Stage::collect)
+    next_.stage = Stage::hold;
+}
+
 // Returns the nearest triangles that a vertex may touch, at most `most_pairs`, of which no two share a corner.
 template <class Real>
 typename TissueContact<Real>::Found TissueContact<Real>::search(std::size_t p)
@@ -267,6 +317,7 @@ void TissueContact<Real>::find_overlap_at_rest()
 
 #define FRONTALIS_TISSUE_CONTACT_SEARCH(Real)                                            \
   template void TissueContact<Real>::go_on(void*, std::int32_t, int);                    \
+  template void TissueContact<Real>::choose_stage(Stage, double);                        \
   template void TissueContact<Real>::sort_triangles();                                   \
   template typename TissueContact<Real>::Found TissueContact<Real>::search(std::size_t); \
   template void TissueContact<Real>::collect_pairs();                                    \
