@@ -44,6 +44,15 @@ double height(const Model& model, std::int32_t node)
   return std::hypot(p[0], p[1], p[2]) - radius;
 }
 
+template <class Restricted>
+std::set<std::int32_t> nodes_of(const std::vector<Restricted>& list)
+{
+  std::set<std::int32_t> nodes;
+  for (const Restricted& entry : list)
+    nodes.insert(entry.node);
+  return nodes;
+}
+
 double smallest_fill(const Model& model) { return *std::min_element(model.fill.begin(), model.fill.end()); }
 
 }  // namespace
@@ -56,10 +65,9 @@ TEST(AttachedNodes, FollowFreeNodesAboveTheSurface)
     const Model model = bake(scene);
     EXPECT_TRUE(model.rigid.empty());
     EXPECT_TRUE(model.sliding.empty());
-    std::set<std::int32_t> attached;
+    const std::set<std::int32_t> attached = nodes_of(model.attached);
     for (const AttachedNode& node : model.attached)
     {
-      attached.insert(node.node);
       const double own = height(model, node.node), of_master = height(model, node.master);
       EXPECT_LT(own, 1.51e-3);
       EXPECT_GT(of_master, 1e-3);
@@ -182,40 +190,68 @@ TEST(AttachedNodes, AreThoseOfTheSurfaceInTheCrop)
   // What is restricted where it is has its own place in the crop.
   scene.accuracy.boundary = "staircase";
   const Model staircase = bake(scene);
+  EXPECT_FALSE(staircase.rigid.empty());
   for (const RigidNode& node : staircase.rigid)
     EXPECT_GE(scene_position(staircase, node.node)[2], edge);
+  EXPECT_FALSE(staircase.sliding.empty());
   for (const SlidingNode& node : staircase.sliding)
     EXPECT_LE(scene_position(staircase, node.node)[2], edge);
 }
 
-// Tissue in one sheet of voxels, whose upper nodes are less than 0.75 edges above the bone, has no masters.
-TEST(AttachedNodes, AreHeldWhereTissueIsTooThin)
+// Tissue in one sheet of voxels, whose nodes are at 0 and 2 mm, has no masters where its upper nodes are less than 0.75
+// edges above the bone. More than half an edge above it they are free, and the lower nodes are held.
+TEST(AttachedNodes, AreHeldOrFreeWhereTissueIsTooThin)
 {
-  Scene scene = layer_scene(8e-3, SceneConstraint::Kind::rigid);
-  scene.surfaces = { box_surface("ball", { 10e-3, 10e-3, -1.95e-3 }, { 60e-3, 60e-3, 6.1e-3 }),
-                     box_surface("skin", { 10e-3, 10e-3, 0.95e-3 }, { 20e-3, 20e-3, 1.9e-3 }) };
-  BakeReport report;
-  const Model model = bake(scene, &report);
-  EXPECT_TRUE(model.attached.empty());
-  EXPECT_FALSE(model.rigid.empty());
-  for (const RigidNode& node : model.rigid)
-    EXPECT_LT(scene_position(model, node.node)[2] - 1.1e-3, 1.01e-3);
-  EXPECT_TRUE(std::any_of(report.findings.begin(), report.findings.end(),
-                          [](const std::string& finding) { return finding.rfind("boundary: tissue", 0) == 0; }));
+  for (const double bone_top : { 0.55e-3, 0.95e-3 })
+  {
+    Scene scene = layer_scene(8e-3, SceneConstraint::Kind::rigid);
+    scene.surfaces = { box_surface("skull", { 10e-3, 10e-3, bone_top - 3e-3 }, { 60e-3, 60e-3, 6e-3 }),
+                       box_surface("skin", { 10e-3, 10e-3, 0.95e-3 }, { 20e-3, 20e-3, 1.9e-3 }) };
+    scene.volumes[0].outside = scene.constraints[0].surfaces = { "skull" };
+    BakeReport report;
+    const Model model = bake(scene, &report);
+    EXPECT_TRUE(model.attached.empty());
+    const std::set<std::int32_t> held = nodes_of(model.rigid);
+    std::size_t above = 0;
+    for (std::int32_t n = 0; n < static_cast<std::int32_t>(model.nodes.size()); ++n)
+    {
+      const double over_bone = scene_position(model, n)[2] - bone_top;
+      above += over_bone > 0 ? 1 : 0;
+      EXPECT_LT(over_bone, 1.5e-3);
+      EXPECT_EQ(held.count(n) > 0, over_bone < 0) << "height " << over_bone;
+    }
+    EXPECT_EQ(above, 121u);
+    EXPECT_EQ(model.nodes.size(), 242u);
+    EXPECT_TRUE(std::any_of(report.findings.begin(), report.findings.end(),
+                            [](const std::string& finding)
+                            {
+                              return finding.rfind("boundary: tissue", 0) == 0 &&
+                                     finding.find("held there (121), the others are free (121)") != std::string::npos;
+                            }));
+  }
 }
 
+// The nodes of other constraints stay where they are, and are those in the crop.
 TEST(AttachedNodes, AreThoseOfConstraintsWithoutADistanceOfTheirOwnOrFriction)
 {
+  const double edge = 0.8 * radius;
   Scene scene = layer_scene(8e-3, SceneConstraint::Kind::rigid);
   scene.constraints[0].within = 1e-3;
+  scene.constraints[0].crop.lower[2] = edge;
   const Model within = bake(scene);
   EXPECT_TRUE(within.attached.empty());
   EXPECT_FALSE(within.rigid.empty());
+  for (const RigidNode& node : within.rigid)
+    EXPECT_GE(scene_position(within, node.node)[2], edge);
   scene = layer_scene(8e-3, SceneConstraint::Kind::sliding);
   scene.constraints[0].friction = 0.2;
+  scene.constraints[0].crop.lower[2] = edge;
   const Model friction = bake(scene);
   EXPECT_TRUE(friction.attached.empty());
   EXPECT_FALSE(friction.sliding.empty());
+  for (const SlidingNode& node : friction.sliding)
+    EXPECT_GE(scene_position(friction, node.node)[2], edge);
+  EXPECT_GE(smallest_fill(friction), 0.2F) << "no cut voxel is kept for nodes that are not attached";
 }
 
 TEST(AttachedNodes, SwitchedOffStayHeldOrSlideWhereTheyAre)
@@ -223,11 +259,13 @@ TEST(AttachedNodes, SwitchedOffStayHeldOrSlideWhereTheyAre)
   for (const auto kind : { SceneConstraint::Kind::rigid, SceneConstraint::Kind::sliding })
   {
     Scene scene = layer_scene(8e-3, kind);
-    const std::size_t attached = bake(scene).attached.size();
+    scene.constraints[0].crop.lower[2] = 0.8 * radius;
+    const std::set<std::int32_t> attached = nodes_of(bake(scene).attached);
     scene.switched_off = EffectSet().with(Effect::attachment);
     const Model model = bake(scene);
     EXPECT_TRUE(model.attached.empty());
-    EXPECT_EQ(model.rigid.size() + model.sliding.size(), attached);
+    EXPECT_FALSE(attached.empty());
+    EXPECT_EQ(kind == SceneConstraint::Kind::rigid ? nodes_of(model.rigid) : nodes_of(model.sliding), attached);
     EXPECT_FALSE(model.tissue_centre.empty());
   }
 }

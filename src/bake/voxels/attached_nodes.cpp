@@ -136,6 +136,9 @@ public:
   /// surface errs by about d / 2D + l / L of the displacement, where strain vanishes at the depth D and displacements
   /// vary along the surface over the length L. The master has the least d^2 / 2 + l^2, which is the least sum of the
   /// squares of both for L = 1.4 D. More weight of d would suit wide layers, and less weight thin bars in torsion.
+  ///
+  /// The ratio is kept between -1 and 1, so that no node moves farther than its master, such as one that is deeper
+  /// below the surface than its master is above it.
   bool find(Candidate& candidate)
   {
     tissue_.begin_at(candidate.node.node);
@@ -249,7 +252,7 @@ public:
   std::optional<Candidate> candidate(const SlidingNode& sliding)
   {
     const ConstraintSurface& surface = model_.constraint_surfaces[sliding.surface];
-    if (sliding.constraint < 0 || !attaches(scene_, scene_.constraints[sliding.constraint]) || surface.friction > 0)
+    if (sliding.constraint < 0 || !attaches(scene_, scene_.constraints[sliding.constraint]))
       return std::nullopt;
     const auto rest = rest_position(model_, sliding.node);
     const physics::DistanceField field = view(surface.field);
@@ -303,7 +306,8 @@ private:
 
 bool attaches(const Scene& scene, const SceneConstraint& constraint)
 {
-  return scene.accuracy.boundary == "true" && constraint.restricts_nodes() && constraint.within < 0;
+  return scene.accuracy.boundary == "true" && constraint.restricts_nodes() && constraint.within < 0 &&
+         constraint.friction == 0;
 }
 
 std::vector<const PreparedSurface*> attaching_surfaces(const Scene& scene, const PreparedSurfaces& surfaces)

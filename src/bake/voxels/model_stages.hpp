@@ -93,18 +93,18 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
 std::vector<std::size_t> origin_nodes(std::size_t muscle, const MuscleFibres& fibres, const std::vector<bool>& near,
                                       const LocalFrame& frame, const Model& model);
 
-/// Whether a constraint attaches tissue at its surfaces: with `boundary: true`, and without a `within` of its own,
-/// which restricts the nodes themselves.
+/// Whether a constraint attaches tissue at its surfaces: with `boundary: true`, without friction, and without a
+/// `within` of its own, which restricts the nodes themselves. It does so too where the effect `attachment` is switched
+/// off: the same nodes are then restricted, but held or sliding where they are.
 bool attaches(const Scene& scene, const SceneConstraint& constraint);
 
-/// With `boundary: true`, the surfaces at which rigid and sliding constraints attach tissue: the surfaces of
-/// constraints without a `within` of their own.
+/// The surfaces of all constraints that attach tissue.
 std::vector<const PreparedSurface*> attaching_surfaces(const Scene& scene, const PreparedSurfaces& surfaces);
 
-/// With `boundary: true`, turns rigid and sliding nodes of constraints without `within` into attached nodes. The master
-/// of a node is a free node above the surface, near the point of the surface that is closest to the node. If there is
-/// none, the tissue is too thin: nodes up to half an edge above the surface stay restricted, and the others become
-/// free. Nodes that slide with friction are not attached.
+/// Turns rigid and sliding nodes of constraints that attach tissue into attached nodes, unless the effect `attachment`
+/// is switched off. The master of a node is a free node above the surface, near the point of the surface that is
+/// closest to the node. If there is none, the tissue is too thin: nodes up to half an edge above the surface stay
+/// restricted, and the others become free.
 void attach_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,
                   BakeMonitor& monitor);
 

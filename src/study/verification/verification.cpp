@@ -137,7 +137,8 @@ void write_manual(const Findings& findings, const std::string& path)
       "relative. Long tables are folded: click on their captions.\n\n"
       "    ./dev cli verify --only hertz shell                       # some cases\n"
       "    ./dev cli verify --markdown doc/verification.md           # all; writes this document\n\n"
-      "The texts are from verification/text.md, and all figures from one run of the second command.\n";
+      "The texts are from verification/text.md. The figures are from one run of the second command, or from later runs "
+      "of single cases, which renewed their sections.\n";
   Table overview({ "case", "checks", "passed", "most of a bound used [%]" });
   std::string sections;
   for (const auto& [name, finding] : findings)
