@@ -20,6 +20,19 @@ Model bar(double young, double poisson)
   return model;
 }
 
+// A square sheet of 3 x 4 squares that a single voxel carries.
+Model sheet(double side, double thickness, double young)
+{
+  Model model = voxel_model({ { 1, 1, 1 } }, side, neo_hookean(young, 0.3));
+  Shell shell;
+  shell.name = "sheet";
+  shell.thickness = thickness;
+  shell.surface = grid_mesh(3, 4, [side](double s, double t) { return Point{ { s * side, t * side, 0 } }; });
+  shell.binding = bind_points(model, shell.surface.vertices);
+  model.shells = { shell };
+  return model;
+}
+
 }  // namespace
 
 TEST(LinearStatics, PullsABarAsHookesLawSays)
@@ -49,14 +62,8 @@ TEST(LinearStatics, TakesPrescribedDisplacements)
 TEST(LinearStatics, PullsAShellAlone)
 {
   constexpr double side = 2e-3, thickness = 1e-4, young = 1e6, stress = 100;
-  Model model = voxel_model({ { 1, 1, 1 } }, side, neo_hookean(young, 0.3));
-  Shell shell;
-  shell.name = "sheet";
-  shell.thickness = thickness;
-  shell.surface = grid_mesh(3, 4, [](double s, double t) { return Point{ { s * side, t * side, 0 } }; });
-  shell.binding = bind_points(model, shell.surface.vertices);
-  model.shells = { shell };
-  const Vectors& at = shell.surface.vertices;
+  const Model model = sheet(side, thickness, young);
+  const Vectors& at = model.shells[0].surface.vertices;
   Vectors forces(at.size());
   std::vector<std::array<bool, 3>> fixed;
   for (std::size_t v = 0; v < at.size(); ++v)
@@ -72,6 +79,26 @@ TEST(LinearStatics, PullsAShellAlone)
     EXPECT_NEAR(u[v][1], -0.3 * stress / young * at[v][1], 1e-12);
     EXPECT_EQ(u[v][2], 0);
   }
+}
+
+TEST(LinearStatics, RefusesWhatIsNotOfEveryPoint)
+{
+  const Model model = sheet(2e-3, 1e-4, 1e6);
+  const std::size_t vertices = model.shells[0].surface.vertices.size();
+  const auto held = [](std::size_t count) { return std::vector<std::array<bool, 3>>(count, { { true, true, true } }); };
+  for (const std::size_t count : { std::size_t(0), vertices - 1, vertices + 1 })
+  {
+    EXPECT_THROW(LinearStatics(model, held(count)), Error) << count;
+    EXPECT_THROW(LinearStatics(model, held(vertices)).solve(Vectors(count)), Error) << count;
+  }
+  EXPECT_NO_THROW(LinearStatics(model, held(vertices)).solve(Vectors(vertices)));
+  const Model block = bar(1e5, 0.3);
+  EXPECT_THROW(LinearStatics(block).solve(Vectors(block.nodes.size() - 1)), Error);
+}
+
+TEST(LinearStatics, RefusesShellsAloneOfAModelWithoutShells)
+{
+  EXPECT_THROW(LinearStatics(bar(1e5, 0.3), std::vector<std::array<bool, 3>>()), Error);
 }
 
 TEST(LinearStatics, FindsWhatIsUnstable)

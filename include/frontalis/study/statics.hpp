@@ -44,7 +44,8 @@ public:
   /// model.prescribed names are fixed. Throws Error if the model has muscles or sliding nodes.
   explicit LinearStatics(const Model& model, const std::array<double, 9>& gradient = { { 1, 0, 0, 0, 1, 0, 0, 0, 1 } });
   /// Statics of a model's shells alone, about their shape at rest. Their vertices are free of the voxels that carry
-  /// them; `fixed` has the components that are held, for each vertex of ShellMesh.
+  /// them; `fixed` has the components that are held, for each vertex of ShellMesh. Throws Error if the model has no
+  /// shells, or if `fixed` has another size.
   LinearStatics(const Model& model, const std::vector<std::array<bool, 3>>& fixed);
   ~LinearStatics();
 
@@ -52,7 +53,7 @@ public:
   bool positive_definite() const;
 
   /// Displacements [m] under forces [N] on nodes, or on vertices, and the prescribed displacements. Throws Error in an
-  /// unstable state.
+  /// unstable state, or if there is not one force for each node or vertex.
   Vectors solve(const Vectors& forces) const;
 
 private:

@@ -37,7 +37,8 @@ constexpr double overlap_at_rest = 0.25, thickest_sheet = 3;
 
 /// The other side of a sheet lies within an angle with this cosine from a triangle's inward normal.
 constexpr double across_sheet = 0.5;
-/// Fraction of the reach by which a vertex and a triangle may approach each other before the search is repeated.
+/// Fraction of the reach by which a vertex and a triangle may approach each other before a CPU repeats the search. It
+/// does so as soon as they could have approached each other by three quarters of this (TissueContact).
 constexpr double renewal_share = 0.8;
 /// Factor on the reach that allows for motion between the sorting of triangles and the search.
 constexpr double margin = 1.1;

@@ -21,6 +21,12 @@ using ElementMatrix = Eigen::Matrix<double, 24, 24>;  // index 3 * corner + axis
 using Sparse = Eigen::SparseMatrix<double>;           // index 3 * node (or vertex) + axis
 using Entries = std::vector<Eigen::Triplet<double>>;
 
+void expect_size(const char* what, std::size_t found, std::size_t expected)
+{
+  if (found != expected)
+    throw Error(fmt::format("linear statics: {} points have {}; there must be {}", found, what, expected));
+}
+
 Mixture mixture_of(const Model& model, std::size_t e)
 {
   Mixture mixture;
@@ -274,11 +280,15 @@ LinearStatics::LinearStatics(const Model& model, const std::array<double, 9>& gr
 LinearStatics::LinearStatics(const Model& model, const std::vector<std::array<bool, 3>>& fixed)
     : system_(std::make_unique<System>(fixed.size()))
 {
+  const ShellMesh mesh(model);
+  if (mesh.binding.voxel.empty())
+    throw Error("linear statics of shells: the model has no shells");
+  expect_size("components that are held", fixed.size(), mesh.binding.voxel.size());
   for (std::size_t v = 0; v < fixed.size(); ++v)
     for (std::size_t axis = 0; axis < 3; ++axis)
       if (fixed[v][axis])
         system_->unknown[v][axis] = -1;
-  system_->factorise(vertex_stiffness(ShellMesh(model), std::vector<physics::Vec3<double>>(fixed.size(), { 0, 0, 0 })));
+  system_->factorise(vertex_stiffness(mesh, std::vector<physics::Vec3<double>>(fixed.size(), { 0, 0, 0 })));
 }
 
 LinearStatics::~LinearStatics() = default;
@@ -289,6 +299,7 @@ Vectors LinearStatics::solve(const Vectors& forces) const
 {
   if (!positive_definite())
     throw Error("linear statics: the stiffness is not positive definite");
+  expect_size("forces", forces.size(), system_->unknown.size());
   Eigen::VectorXd x = system_->forces;
   system_->for_each_unknown([&](int row, std::size_t n, std::size_t axis) { x[row] += forces[n][axis]; });
   x = system_->factor.solve(x);
