@@ -1,7 +1,7 @@
 // Verifies bodies whose sides do not follow the grid. They are baked in the same way as a user's scene.
 
 #include "frontalis/error.hpp"
-#include "frontalis/physics/trilinear.hpp"
+#include "frontalis/solver/bound_displacement.hpp"
 #include "study/verification/boundary_bodies.hpp"
 #include "study/verification/calculix.hpp"
 #include "study/verification/verification_cases.hpp"
@@ -97,19 +97,13 @@ void compare(const BoundaryBody& body, const Model& model, const TriangleMesh& m
              const std::array<std::vector<double>, 3>& u, Difference& sum)
 {
   const std::vector<double> area = vertex_areas(mesh);
+  const double* const nodes[3] = { u[0].data(), u[1].data(), u[2].data() };
   for (std::size_t v = 0; v < area.size(); ++v)
   {
     const Point exact = body.exact(model.to_scene(mesh.vertices[v]));
     if (std::isnan(exact[0]))
       continue;
-    const auto& at = binding.coordinates[v];
-    double weight[8];
-    physics::trilinear_weights<double>(at[0], at[1], at[2], weight);
-    Point moved{};
-    for (std::size_t b = 0; b < 8; ++b)
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        moved[axis] += weight[b] * u[axis][model.voxel_nodes[binding.voxel[v]][b]];
-    const Point found = model.to_scene.turned(moved);
+    const Point found = model.to_scene.turned(bound_displacement(model, binding, v, nodes));
     for (std::size_t axis = 0; axis < 3; ++axis)
     {
       sum.error += area[v] * (found[axis] - exact[axis]) * (found[axis] - exact[axis]);

@@ -1,8 +1,8 @@
 // Curved layers that are shells, baked from scenes: a cylinder and a hemisphere that point loads pinch.
 
 #include "frontalis/physics/number.hpp"
+#include "frontalis/solver/bound_displacement.hpp"
 #include "frontalis/solver/shell_mesh.hpp"
-#include "solver/skin/bound_points.hpp"
 #include "study/verification/film_slab.hpp"
 
 #include <cmath>
