@@ -32,6 +32,12 @@ Material material_of(const Scene& scene, const SceneMaterial& material, const Lo
   out.law = *law;
   out.density = material.density;
   out.parameters = physics::numbers_of(*law, given, poisson);
+  const double shear = physics::shear_modulus_of(*law, out.parameters);
+  if (scene.accuracy.bulk_modulus_max > 0)
+  {
+    double& bulk = out.parameters[physics::bulk_modulus_slot];
+    bulk = physics::limited_bulk_modulus(bulk, shear, scene.accuracy.bulk_modulus_max);
+  }
   for (int d = 0; d < description.directions; ++d)
   {
     const Vector3 direction = frame.turn(material.families[d]);
@@ -42,7 +48,6 @@ Material material_of(const Scene& scene, const SceneMaterial& material, const Lo
     out.viscous_share[term] = material.viscosity[term].share;
     out.viscous_time[term] = material.viscosity[term].time;
   }
-  const double shear = physics::shear_modulus_of(*law, out.parameters);
   if (!(shear > 0) || !(poisson > -1) || !(poisson < 0.5))
     throw failure(
         "{}: its shear modulus at rest is {} Pa and its Poisson's ratio {}; the modulus must be above 0 and the ratio "

@@ -48,9 +48,6 @@ Scene scene_with(Scene scene, const AccuracySetting& setting)
   scene.accuracy.measured = {};
   scene.profiles.clear();
   scene.time.scaling *= setting.time_scaling;
-  if (setting.poisson != 0)
-    for (SceneMaterial& material : scene.materials)
-      material.parameters["poisson"] = setting.poisson;
   scene.content = content_of(scene);
   return scene;
 }
@@ -289,7 +286,7 @@ void add_accuracy_command(CLI::App& app)
       ->add_option(
           "--knobs", options->knobs,
           "vary only these, without combinations: voxel, samples, fill_min, hourglass, integration, precision, "
-          "share, time_step, mass_scaling, poisson, time_scaling, backend, profiles")
+          "share, time_step, mass_scaling, bulk_modulus_max, time_scaling, backend, profiles")
       ->delimiter(',');
   add_positive(*command, "--voxels", options->voxels, "voxel edges, coarse to fine [mm]; the last is the reference's")
       ->delimiter(',');

@@ -62,6 +62,7 @@ AccuracyProfile read_profile(const std::string& name, const Node& node, const Sc
   profile.time_step_share = mapping.optional("time_step_share")
                                 .number(Dimension::number, Bound{ 0, 1, false, true }, profile.time_step_share);
   read_mass_scaling(mapping.optional("mass_scaling"), profile.mass_scaling, names);
+  profile.bulk_modulus_max = mapping.optional("bulk_modulus_max").number(Dimension::pressure, positive, 0);
   std::string hourglass = "scalar";
   const auto choose = [&mapping](const std::string& key, const std::vector<std::string>& allowed, std::string& chosen)
   {

@@ -27,7 +27,7 @@ Model bar(const AccuracySetting& setting)
   VoxelBox box;
   box.size = { { n, m, m } };
   box.spacing.fill(edge);
-  box.materials = { neo_hookean(30e3, setting.poisson != 0 ? setting.poisson : 0.45) };
+  box.materials = { neo_hookean(30e3, 0.45) };
   Model model = voxel_model(box);
   Muscle muscle;
   muscle.name = "pull";
@@ -76,7 +76,7 @@ protected:
     maker.content = [](const AccuracySetting& s)
     {
       std::string text;
-      for (const double value : { s.profile.voxel[0], s.profile.time_step_share, s.poisson, s.time_scaling,
+      for (const double value : { s.profile.voxel[0], s.profile.time_step_share, s.profile.bulk_modulus_max, s.time_scaling,
                                   static_cast<double>(s.profile.samples), s.profile.assumed_strain ? 1.0 : 0.0 })
         text += std::to_string(1e6 * value) + " ";
       return text + s.profile.precision;

@@ -90,6 +90,7 @@ struct AccuracyProfile
   double fill_min = 0.2;              ///< voxels with a smaller proportion of tissue are left out
   double time_step_share = 0.9;       ///< time step as a proportion of the critical time step
   MassScaling mass_scaling;
+  double bulk_modulus_max = 0;            ///< upper limit of bulk moduli [Pa] (physics::limited_bulk_modulus); 0: none
   bool assumed_strain = false;            ///< hourglass control: assumed strain instead of a scalar stiffness
   std::string integration = "one_point";  ///< or selective_reduced
   std::string precision = "single";       ///< or compensated, double; used by the CPU backend

@@ -18,7 +18,6 @@ namespace frontalis
 struct AccuracySetting
 {
   AccuracyProfile profile;
-  double poisson = 0;       ///< Poisson's ratio of all materials; 0: as in the scene
   double time_scaling = 1;  ///< factor on the scene's time scaling
   Backend backend = "cpu";
 };

@@ -136,7 +136,7 @@ std::vector<std::size_t> pareto_front(const std::vector<AccuracyRow>& rows, cons
                                       double floor)
 {
   const auto is_profile = [&](const AccuracySetting& s)
-  { return s.poisson == 0 && s.time_scaling == 1 && s.backend == standard.backend; };
+  { return s.time_scaling == 1 && s.backend == standard.backend; };
   std::vector<std::size_t> order;
   for (std::size_t r = 0; r < rows.size(); ++r)
     if (rows[r].fault.empty() && is_profile(rows[r].setting) && rows[r].cost > 0 && rows[r].error.rms >= 0)

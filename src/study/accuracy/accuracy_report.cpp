@@ -182,6 +182,7 @@ std::string profile_text(const AccuracyRow& row, const std::string& name, const 
   add(p.assumed_strain, "hourglass: assumed_strain");
   add(p.integration != defaults.integration, "integration: " + p.integration);
   add(p.precision != defaults.precision, "precision: " + p.precision);
+  add(p.bulk_modulus_max > 0, "bulk_modulus_max: " + readable(1e-3 * p.bulk_modulus_max, 4) + " kPa");
   const MassScaling& mass = p.mass_scaling;
   if (mass.kind == MassScaling::Kind::uniform)
     text += ", mass_scaling: {uniform: " + readable(mass.factor) + "}";

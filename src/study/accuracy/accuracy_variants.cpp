@@ -117,8 +117,9 @@ std::vector<Sweep> knob_sweeps(const AccuracyPlan& plan, double critical)
            { "mass_scaling", "mass scaling",
              sweep(s, quick ? Numbers{ 1, 4, 8 } : Numbers{ 1, 2, 3, 4, 6, 8 },
                    [=](auto& to, double factor) { scale_mass(to, factor, critical); }) },
-           { "poisson", "Poisson's ratio",
-             sweep(s, Numbers{ 0.45, 0.49, 0.499 }, [](auto& to, double poisson) { to.poisson = poisson; }) },
+           { "bulk_modulus_max", "limit of bulk moduli",
+             sweep(s, quick ? Numbers{ 0, 250e3 } : Numbers{ 0, 1e6, 500e3, 250e3, 100e3 },
+                   [](auto& to, double limit) { to.profile.bulk_modulus_max = limit; }) },
            { "time_scaling", "time scaling",
              sweep(s, quick ? Numbers{ 2, 4 } : Numbers{ 2, 4, 8 },
                    [](auto& to, double factor) { to.time_scaling = factor; }) },
@@ -183,7 +184,9 @@ std::string name_of(const AccuracySetting& setting, const AccuracySetting& stand
   add(p.boundary != s.boundary, "boundary " + p.boundary);
   add(p.time_step_share != s.time_step_share, readable(p.time_step_share, 3) + " of the step");
   add(!same(p.mass_scaling, s.mass_scaling), text_of(p.mass_scaling));
-  add(setting.poisson != standard.poisson, "Poisson " + readable(setting.poisson, 4));
+  add(p.bulk_modulus_max != s.bulk_modulus_max,
+      p.bulk_modulus_max > 0 ? "bulk moduli to " + readable(1e-3 * p.bulk_modulus_max, 4) + " kPa"
+                             : "all of the bulk moduli");
   add(setting.time_scaling != standard.time_scaling, "time ×" + readable(setting.time_scaling, 3));
   add(setting.backend != standard.backend, setting.backend);
   return name.empty() ? "standard" : name;
@@ -198,8 +201,6 @@ double relative_time(const AccuracySetting& setting)
   time *= p.integration == "selective_reduced" ? 2.5 : p.assumed_strain ? 1.4 : 1;
   time *= p.precision == "double" ? 2 : 1;
   time *= p.mass_scaling.kind == MassScaling::Kind::none ? 1 : 0.3;
-  if (setting.poisson > 0.495)
-    time *= 3;
   return time * (setting.backend == "reference" ? 30 : 1);
 }
 

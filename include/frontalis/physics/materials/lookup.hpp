@@ -2,6 +2,7 @@
 
 #include "frontalis/physics/materials/all.hpp"
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string_view>
@@ -62,6 +63,15 @@ inline MaterialNumbers numbers_of(Law law, const std::array<double, law_paramete
   }
   numbers[bulk_modulus_slot] = 2 * shear_modulus_of(law, numbers) * (1 + poisson) / (3 * (1 - 2 * poisson));
   return numbers;
+}
+
+/// Bulk modulus [Pa] of a material with the shear modulus `shear` in a model whose bulk moduli are limited to `limit`:
+/// no limit goes below that of Poisson's ratio 0.4. Tissue is nearly incompressible, so that a bulk modulus stands only
+/// for one that is far larger. It has to be large against the stresses that act, and a larger one shortens the step.
+inline double limited_bulk_modulus(double bulk, double shear, double limit)
+{
+  constexpr double of_least_ratio = 2 * (1 + 0.4) / (3 * (1 - 2 * 0.4));
+  return std::min(bulk, std::max(limit, of_least_ratio * shear));
 }
 
 /// The numbers of the description's example, including directions, for tests and studies of every law.
