@@ -208,7 +208,7 @@ double CudaSolver::run(const StepPlan& plan)
   if (plans_ == 1 || plan.bound_awaited)
     return seen(plans_ - 1);
   const double before = seen(plans_ - 2);
-  return before > plan.alarming_frequency_squared ? seen(plans_ - 1) : before;
+  return before > plan.alarming ? seen(plans_ - 1) : before;
 }
 
 // Computes the internal forces at any displacements. `out` must hold zeros for nodes without voxels.

@@ -65,7 +65,7 @@ void DeviceModel::run_fibres(const Model& model, const Discretisation& discretis
   {
     discretisation.voxel(e, voxel);
     float& bound = palette[palette_of_voxel_[e]].w;
-    bound = std::max(bound, static_cast<float>(voxel.stiffness));
+    bound = std::max(bound, static_cast<float>(voxel.measured_at_rest));
   }
   palette_.upload(palette.data(), palette.size());
 }

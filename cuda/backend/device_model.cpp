@@ -221,7 +221,7 @@ std::vector<std::uint32_t> DeviceModel::add_palette(const Model& model, const Di
     d.voxel(e, voxel);
     entry.clear();
     for (const double x :
-         { voxel.mu * voxel.tissue_volume, voxel.kappa * voxel.tissue_volume, voxel.hourglass, voxel.stiffness })
+         { voxel.mu * voxel.tissue_volume, voxel.kappa * voxel.tissue_volume, voxel.hourglass, voxel.measured_at_rest })
       entry.push_back(static_cast<float>(x));
     const auto& form = voxel.stabilisation;
     if (stabilised)

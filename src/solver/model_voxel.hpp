@@ -33,7 +33,7 @@ struct ModelVoxel
     return { properties.mu * properties.tissue_volume, properties.kappa * properties.tissue_volume };
   }
   double hourglass() const { return properties.hourglass; }
-  double bound_at_rest() const { return properties.stiffness; }
+  double bound_at_rest() const { return properties.measured_at_rest; }
   physics::AssumedStrain<double> stabilisation() const { return properties.stabilisation; }
 
   bool has_laws() const { return !properties.laws.empty(); }

@@ -119,7 +119,7 @@ TileStiffness stiffness_of(const TileVoxels& voxels)
     s.mu[lane] = static_cast<float>(v.mu * v.tissue_volume);
     s.kappa[lane] = static_cast<float>(v.kappa * v.tissue_volume);
     s.hourglass[lane] = static_cast<float>(v.hourglass);
-    s.bound[lane] = static_cast<float>(v.stiffness);
+    s.bound[lane] = static_cast<float>(v.measured_at_rest);
   }
   return s;
 }
@@ -217,7 +217,7 @@ void VoxelRows::renew_bounds(const Discretisation& discretisation)
       if (const auto e = tiles[t].voxel(lane); e >= 0)
       {
         discretisation.voxel(static_cast<std::size_t>(e), voxel);
-        stiffness[t].bound[lane] = static_cast<float>(voxel.stiffness);
+        stiffness[t].bound[lane] = static_cast<float>(voxel.measured_at_rest);
       }
 }
 

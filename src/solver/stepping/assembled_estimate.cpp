@@ -21,9 +21,9 @@ constexpr std::int64_t fewest_valid = 50, shortest_valid = 200, longest_valid = 
 // activations grow.
 constexpr float activation_ahead = 0.5F;
 constexpr float activation_tolerance = 0.02F;  // replaces `activation_ahead` where activations rest
-// If the bound at nodes grows by this factor, the estimate has grown with it, perhaps without need.
-constexpr double growth_allowed = 1.1;
-constexpr std::int64_t steps_until_growth_counts = 100;
+// A search is made if what the estimate covers has grown by this factor, because the bound grows more than the model.
+constexpr double growth_allowed = 1.25;
+constexpr std::int64_t steps_until_growth_counts = 25;
 // The estimate falls by at most this factor per search. A search may meet vibrating tissue in a moment in which it is
 // soft, and the tissue stiffens again within a few dozen steps.
 constexpr double slowest_fall = 0.7;
@@ -36,44 +36,47 @@ std::int64_t steps_in_motion(double frequency_squared)
 
 }  // namespace
 
-double AssembledEstimate::bound_covered(double bound) const { return share_ < 1 ? std::max(bound, bound_) : bound; }
+double AssembledEstimate::covered(double growth) const { return found_ + std::max(growth, growth_); }
 
-void AssembledEstimate::renew(const std::vector<float>& activation, bool moving, double bound, const Search& search)
+double AssembledEstimate::frequency_squared(double growth) const
+{
+  return found_ * (covered(growth) / (found_ + growth_));
+}
+
+void AssembledEstimate::renew(const std::vector<float>& activation, bool moving, double growth, double most,
+                              const Search& search)
 {
   activation_.resize(activation.size());
   bool activated = false;
   for (std::size_t m = 0; m < activation.size(); ++m)
     activated = activated || activation[m] > activation_[m];
   if (moving)
-    steps_valid_ = std::min(steps_valid_, steps_in_motion(frequency_squared(bound)));
-  const bool grown = bound_ > 0 && bound > growth_allowed * bound_ && steps_ >= steps_until_growth_counts;
-  if (bound_ > 0 && !activated && !grown && steps_ < steps_valid_)
+    steps_valid_ = std::min(steps_valid_, steps_in_motion(found_));
+  const bool grown = known() && covered(growth) > growth_allowed * (found_ + growth_) &&
+                     steps_ >= steps_until_growth_counts;
+  if (known() && !activated && !grown && steps_ < steps_valid_)
     return;
   // A search after growth keeps the activations, because they may be on their way to those.
   const float ahead = activated ? activation_ahead : activation_tolerance;
   for (std::size_t m = 0; m < activation.size() && (activated || !grown); ++m)
     activation_[m] = activation[m] > 0 ? std::min(1.0F, activation[m] + ahead) : 0;
-  const double found = search(activation_);
-  if (bound_ == 0 || activated || moving)
-    steps_valid_ = steps_in_motion(found);
-  else if (!grown)
+  const double squared = search(activation_), least = slowest_fall * found_;
+  if (!known() || activated || moving || grown)
+    steps_valid_ = steps_in_motion(squared);
+  else
     steps_valid_ = std::min(2 * steps_valid_, longest_valid);
-  const double allowance = grown || steps_valid_ < longest_valid ? margin_in_motion : frequency_margin;
-  const double least = slowest_fall * share_ * bound_ / bound;
-  share_ = found > 0 && std::isfinite(found) ? std::min(1.0, allowance * found / bound) : 1.0;
-  if (share_ < least)
+  const double allowance = steps_valid_ < longest_valid ? margin_in_motion : frequency_margin;
+  found_ = squared > 0 && std::isfinite(squared) ? std::min(most, allowance * squared) : most;
+  if (found_ < least)
   {
-    share_ = std::min(1.0, least);
-    steps_valid_ = steps_in_motion(found);
+    found_ = least;
+    steps_valid_ = steps_in_motion(squared);
   }
+  softest_ = softest_ > 0 ? std::min(softest_, found_) : found_;
+  growth_ = growth;
   steps_ = 0;
-  bound_ = bound;
 }
 
-void AssembledEstimate::discard()
-{
-  share_ = 1;
-  bound_ = 0;
-}
+void AssembledEstimate::discard() { found_ = growth_ = softest_ = 0; }
 
 }  // namespace frontalis

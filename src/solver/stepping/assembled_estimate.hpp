@@ -9,36 +9,44 @@
 namespace frontalis
 {
 
-/// Ratio of the assembled model's squared highest frequency to its bound at nodes, and the decision when to compute it
-/// again.
+/// Squared highest frequency of the assembled model, and the decision when to search for it again.
+///
+/// Between searches the stiffness of the model can grow by at most what the stiffness of its voxels grows. The measure
+/// of this is the growth since rest of the bound at nodes: the largest ratio, among all nodes, of the growth of the
+/// bounds of the voxels at a node to the node's mass [1/s2] (physics/time_step.hpp).
 class AssembledEstimate
 {
 public:
   /// Squared highest frequency at given activations.
   using Search = std::function<double(const std::vector<float>& activation)>;
 
-  /// The largest bound at nodes for which the ratio is used: the present bound or, if that is smaller, the bound when
-  /// the ratio was found. The estimate does not fall when the bound falls, because the node that sets the bound may
-  /// soften while the rest of the model does not.
-  double bound_covered(double bound) const;
-  /// Estimate of the squared highest frequency, given the present bound at nodes.
-  double frequency_squared(double bound) const { return share_ * bound_covered(bound); }
-  /// Ratio of squared frequency to bound; 1 if it is unknown.
-  double share() const { return share_; }
+  bool known() const { return found_ > 0; }
+  /// The frequency that the latest search found, with its margin, plus growth, which is not less than it was then.
+  double covered(double growth) const;
+  /// Estimate at a growth since rest; it is in proportion to covered().
+  double frequency_squared(double growth) const;
+  /// What the latest search found, with its margin, and the least that a search has found.
+  double found() const { return found_; }
+  double softest() const { return softest_; }
   void steps_taken(int steps) { steps_ += steps; }
-  /// Computes the ratio again if this is due. `activation`: the largest activations until the next call. `moving`:
-  /// whether bones move, so that tissue stiffens where no muscle acts.
-  void renew(const std::vector<float>& activation, bool moving, double bound, const Search& search);
-  /// Discards the ratio. Call it when displacements were set from outside.
+  /// Searches if this is due. `activation`: the largest activations until the next call. `moving`: whether bones move,
+  /// so that tissue stiffens where no muscle acts. `growth`: at present. `most`: bound at rest, the estimate if the
+  /// search finds no number.
+  void renew(const std::vector<float>& activation, bool moving, double growth, double most, const Search& search);
+  /// Forgets what was found. Call it when displacements were set from outside.
   void discard();
-  void archive(ByteArchive& archive) { archive(share_)(bound_)(steps_)(steps_valid_)(activation_); }
+  void archive(ByteArchive& archive)
+  {
+    archive(found_)(growth_)(softest_)(steps_)(steps_valid_)(activation_);
+  }
 
 private:
-  double share_ = 1;
-  double bound_ = 0;               // bound at nodes when the ratio was found [1/s2]; 0: not found
-  std::int64_t steps_ = 0;         // steps since the ratio was found
-  std::int64_t steps_valid_ = 0;   // number of steps for which the ratio is valid
-  std::vector<float> activation_;  // for which the ratio was found
+  double found_ = 0;               // [1/s2]; 0: unknown
+  double growth_ = 0;              // growth since rest at the latest search [1/s2]
+  double softest_ = 0;             // the least that a search has found [1/s2]
+  std::int64_t steps_ = 0;         // steps since the latest search
+  std::int64_t steps_valid_ = 0;   // number of steps for which it is valid
+  std::vector<float> activation_;  // of the latest search
 };
 
 }  // namespace frontalis

@@ -34,10 +34,9 @@ struct StepPlan
   /// that this is half of the previous step plus half of dt.
   double first_kick = 0;
   double time = 0;                ///< time at the start of the plan [s]
-  bool bound_every_step = false;  ///< true: find the frequency bound in every step; false: in the last one only
-  bool bound_awaited = false;     ///< true: run() must return the bound of this plan, not of the previous one
-  /// run() waits for this plan's bound if the previous plan's bound exceeds this value [1/s2]
-  double alarming_frequency_squared = 0;
+  bool bound_every_step = false;  ///< true: measure the frequency bound in every step; false: in the last one only
+  bool bound_awaited = false;     ///< true: run() must return what this plan measured, not the previous one
+  double alarming = 0;  ///< run() waits for what this plan measures if the previous one measured more [1/s2]
   Controls begin, end;             ///< activations as fibres feel them
   std::vector<double> relaxation;  ///< one per step: by how much viscous stresses relax after it [s]
 

@@ -18,7 +18,7 @@ constexpr double cautious_share = 0.55;  // cautious steps: fraction of the crit
 constexpr int cautious_plan = 8;         // number of steps in a cautious plan
 constexpr int vibration_plan = 32;       // largest number of steps in a plan while tissue vibrates
 // The following constants define signs of fast change, and the number of cautious steps after each.
-constexpr double growth_between_plans = 1.1;  // ratio of squared frequencies of successive plans
+constexpr double growth_between_plans = 1.1;  // ratio of covered squared frequencies of successive plans
 constexpr int steps_after_stiffening = 128;
 constexpr float activation_change_allowed = 0.3F;  // change of a muscle's activation within a plan
 constexpr int steps_after_a_switch = 48;
@@ -34,8 +34,12 @@ constexpr double slowest_softening = 0.95;  // ratio of squared frequencies of s
 
 }  // namespace
 
-TimeStepController::TimeStepController(double rest_frequency_squared, double safety_share, double fixed_step)
-    : rest_frequency_squared_(rest_frequency_squared), safety_share_(safety_share), fixed_step_(fixed_step)
+TimeStepController::TimeStepController(double bound_at_rest, TimeStepEstimate estimate, double safety_share,
+                                       double fixed_step)
+    : bound_at_rest_(bound_at_rest),
+      safety_share_(safety_share),
+      fixed_step_(fixed_step),
+      assembled_(estimate == TimeStepEstimate::assembled)
 {
   reset();
   if (!(fixed_step >= 0 && fixed_step <= critical_step(1)))
@@ -46,13 +50,30 @@ TimeStepController::TimeStepController(double rest_frequency_squared, double saf
 void TimeStepController::reset()
 {
   state_ = {};
-  state_.frequency_squared = rest_frequency_squared_;
+  state_.measured = measured_at_rest();
 }
 
-double TimeStepController::critical_step(double share) const
+double TimeStepController::not_measured() const
 {
-  return share * 2 / std::sqrt(state_.assembled.frequency_squared(state_.frequency_squared));
+  return !assembled_ ? 0 : state_.assembled.known() ? state_.assembled.found() : bound_at_rest_;
 }
+
+double TimeStepController::covered(double measured) const
+{
+  return assembled_ && state_.assembled.known() ? state_.assembled.covered(measured) : not_measured() + measured;
+}
+
+double TimeStepController::frequency_squared(double measured) const
+{
+  return assembled_ && state_.assembled.known() ? state_.assembled.frequency_squared(measured) : covered(measured);
+}
+
+double TimeStepController::critical_step_at(double measured) const
+{
+  return 2 / std::sqrt(frequency_squared(measured));
+}
+
+double TimeStepController::critical_step(double share) const { return share * critical_step_at(state_.measured); }
 
 double TimeStepController::safe_step() const
 {
@@ -67,9 +88,9 @@ void TimeStepController::slow_down(double share)
   slow_share_ = share;
 }
 
-double TimeStepController::alarming_frequency_squared() const
+double TimeStepController::alarming() const
 {
-  return growth_between_plans * state_.assembled.bound_covered(state_.frequency_squared);
+  return growth_between_plans * covered(state_.measured) - not_measured();
 }
 
 TimeStepController::Choice TimeStepController::choose(double remaining, double longest,
@@ -92,18 +113,18 @@ TimeStepController::Choice TimeStepController::choose(double remaining, double l
            cautious, cautious || vibrates };
 }
 
-void TimeStepController::observe(double frequency_squared, int steps)
+void TimeStepController::observe(double measured, int steps)
 {
-  const double covered = state_.assembled.bound_covered(frequency_squared);
-  const bool changes = std::abs(covered - state_.latest_observed) > vibration_change * state_.latest_observed;
-  const bool vibrates = changes && state_.assembled.share() * covered > stiffening_ratio * rest_frequency_squared_;
-  const bool stiffens = frequency_squared > alarming_frequency_squared();
-  state_.latest_observed = covered;
+  const double now = covered(measured), at_rest = state_.assembled.known() ? state_.assembled.softest() : bound_at_rest_;
+  const bool changes = std::abs(now - state_.latest_covered) > vibration_change * state_.latest_covered;
+  const bool vibrates = changes && frequency_squared(measured) > stiffening_ratio * at_rest;
+  const bool stiffens = measured > alarming();
+  state_.latest_covered = now;
   state_.cautious_steps_left = std::max(stiffens ? steps_after_stiffening : 0, state_.cautious_steps_left - steps);
   state_.vibration_steps_left = std::max(vibrates ? steps_after_vibration : 0, state_.vibration_steps_left - steps);
+  const double softened = slowest_softening * (not_measured() + state_.measured) - not_measured();
   if (!mutation::time_step_of_rest)
-    state_.frequency_squared =
-        std::max({ frequency_squared, slowest_softening * state_.frequency_squared, rest_frequency_squared_ });
+    state_.measured = std::max({ measured, softened, measured_at_rest() });
   state_.assembled.steps_taken(steps);
 }
 
@@ -123,11 +144,11 @@ void TimeStepController::bone_jumped()
   state_.cautious_steps_left = std::max(state_.cautious_steps_left, steps_after_a_jump);
 }
 
-void TimeStepController::displacements_set(double frequency_squared)
+void TimeStepController::displacements_set(double measured)
 {
-  state_.frequency_squared = rest_frequency_squared_;
-  if (std::isfinite(frequency_squared))
-    state_.frequency_squared = std::max(frequency_squared, rest_frequency_squared_);
+  state_.measured = measured_at_rest();
+  if (std::isfinite(measured))
+    state_.measured = std::max(measured, measured_at_rest());
   state_.cautious_steps_left = steps_after_stiffening;
   state_.assembled.discard();
 }

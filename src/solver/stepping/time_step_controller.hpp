@@ -6,8 +6,9 @@
 namespace frontalis
 {
 
-/// Chooses the length of steps, and the number of steps until the frequency bound is found again, from the bounds that
-/// a backend finds, the activations, and jumps of bones.
+/// Chooses the length of steps, and the number of steps until the backend measures again, from what a backend measures,
+/// the activations, and jumps of bones. A backend measures the bound of the squared frequency at nodes or, if the
+/// highest frequency of the assembled model sets the time step, the growth of this bound since rest [1/s2].
 ///
 /// Just below the critical step, tissue that stiffens as it vibrates gains or loses energy in every cycle. The
 /// controller is therefore cautious for some steps after signs of fast change: steps are shorter, plans have few steps,
@@ -18,15 +19,15 @@ class TimeStepController
 public:
   struct State
   {
-    double frequency_squared = 0;  ///< bound at nodes from which steps are chosen [1/s2]
-    double latest_observed = 0;    ///< bound that the estimate covered in the latest plan [1/s2]
+    double measured = 0;        ///< from which steps are chosen [1/s2]
+    double latest_covered = 0;  ///< squared frequency that was covered in the latest plan [1/s2]
     int cautious_steps_left = 0;
     int vibration_steps_left = 0;
     AssembledEstimate assembled;
 
     void archive(ByteArchive& archive)
     {
-      archive(frequency_squared)(latest_observed)(cautious_steps_left)(vibration_steps_left);
+      archive(measured)(latest_covered)(cautious_steps_left)(vibration_steps_left);
       assembled.archive(archive);
     }
   };
@@ -40,41 +41,56 @@ public:
     bool bound_awaited;     ///< as in StepPlan
   };
 
-  /// Steps take `safety_share` of the critical step, or `fixed_step` [s] if that is not 0. Throws Error if the fixed
-  /// step is above the critical one at rest.
-  TimeStepController(double rest_frequency_squared, double safety_share, double fixed_step);
+  /// Steps take `safety_share` of the critical step, or `fixed_step` [s] if that is not 0. `bound_at_rest`: of the
+  /// squared frequency at nodes [1/s2]. Throws Error if the fixed step is above the critical one at rest.
+  TimeStepController(double bound_at_rest, TimeStepEstimate estimate, double safety_share, double fixed_step);
 
   /// Longest step [s] that would be made now without caution.
   double safe_step() const;
   /// Limits further steps to this fraction of the safe step. Throws Error if it is out of range.
   void slow_down(double share);
-  /// Bound above which the backend must wait for a plan's own bound [1/s2]; see StepPlan.
-  double alarming_frequency_squared() const;
+  /// Critical step if a backend measures this [s].
+  double critical_step_at(double measured) const;
+  /// What the backend must measure in a plan before to wait for what it measures in the plan itself; see StepPlan.
+  double alarming() const;
   /// The next plan of a motion that ends after `remaining` [s], with steps of at most `longest` [s].
   Choice choose(double remaining, double longest, const BackendTraits& backend) const;
 
-  /// Records the largest bound that a backend found in the latest plan or in the plan before it.
-  void observe(double frequency_squared, int steps);
+  /// Records the most that a backend measured in the latest plan or in the plan before it.
+  void observe(double measured, int steps);
   /// Whether a muscle is switched on or off between these activations. If so, the controller becomes cautious, because
   /// the muscle's voxels stiffen at once, and the voxels that it pulls stiffen a little later.
   bool muscles_switched(const std::vector<float>& from, const std::vector<float>& to);
   /// Becomes cautious, because the velocity of a bone has jumped (BoneMotionLimits).
   void bone_jumped();
-  /// Resets the controller after displacements were set from outside. `frequency_squared`: bound of the model's squared
-  /// frequencies at these displacements [1/s2].
-  void displacements_set(double frequency_squared);
+  /// Resets the controller after displacements were set from outside. `measured`: by the backend at these.
+  void displacements_set(double measured);
   /// Sets the bound at rest [1/s2], which changes when effects are switched.
-  void set_rest_frequency(double squared) { rest_frequency_squared_ = squared; }
+  void set_bound_at_rest(double squared)
+  {
+    bound_at_rest_ = squared;
+    state_.assembled.discard();
+  }
+  /// Searches for the highest frequency of the assembled model if this is due (AssembledEstimate::renew()).
+  void renew_assembled(const std::vector<float>& activation, bool moving, const AssembledEstimate::Search& search)
+  {
+    state_.assembled.renew(activation, moving, state_.measured, bound_at_rest_, search);
+  }
   void reset();
 
   const State& state() const { return state_; }
   void restore(const State& state) { state_ = state; }
-  AssembledEstimate& assembled() { return state_.assembled; }
 
 private:
   double critical_step(double share) const;  ///< this fraction of the critical step [s]
+  /// Squared frequency that is covered at a measure [1/s2], the part of it that is not measured, and the estimate.
+  double covered(double measured) const;
+  double not_measured() const;
+  double frequency_squared(double measured) const;
+  double measured_at_rest() const { return assembled_ ? 0 : bound_at_rest_; }
 
-  double rest_frequency_squared_, safety_share_, fixed_step_;
+  double bound_at_rest_, safety_share_, fixed_step_;
+  bool assembled_;
   double slow_share_ = 1;
   State state_;
 };

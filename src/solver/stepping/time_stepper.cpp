@@ -64,7 +64,8 @@ TimeStepper::TimeStepper(std::shared_ptr<const Model> model, const SolverSetting
     : model_((check_model(*model), std::move(model))),
       discretisation_(*model_),
       effects_(*model_),
-      controller_(discretisation_.frequency_squared_max, model_->time_step_share, settings.time_step),
+      controller_(discretisation_.frequency_squared_max, model_->time_step_estimate, model_->time_step_share,
+                  settings.time_step),
       motion_(at_rest()),
       damping_(model_->damping)
 {
@@ -117,7 +118,7 @@ void TimeStepper::set_velocities(const NodalVectors& in)
 
 void TimeStepper::displacements_were_set()
 {
-  const double critical = monitor().critical_time_step;
+  const double critical = backend_->monitor().critical_time_step;
   motion_.latest_step = 0;
   controller_.displacements_set(4 / (critical * critical));
   open_ledger();
@@ -163,15 +164,15 @@ void TimeStepper::advance(double seconds, const Controls& asked)
     const double reached = choice.reaches_end ? end : motion_.time + choice.steps * choice.dt;
     const Controls next = choice.reaches_end ? target : interpolate(from, target, (reached - begin) / seconds);
     const StepPlan plan = plan_to(next, choice);
-    const double frequency_squared = backend_->run(plan);
+    const double measured = backend_->run(plan);
     motion_.time = reached;
     motion_.latest_step = plan.dt;
     motion_.controls = next;
     profile_.steps += plan.steps;
-    motion_.diverged = !std::isfinite(frequency_squared);
+    motion_.diverged = !std::isfinite(measured);
     if (motion_.diverged)
       throw Diverged(fmt::format("the motion diverged at {:g} s: displacements are no longer finite", motion_.time));
-    controller_.observe(frequency_squared, plan.steps);
+    controller_.observe(measured, plan.steps);
   }
   motion_.controls = target;
 }
@@ -196,8 +197,7 @@ void TimeStepper::renew_assembled_estimate(const Controls& asked)
   std::vector<float> most = motion_.activation;
   for (std::size_t m = 0; m < most.size(); ++m)
     most[m] = std::max({ most[m], motion_.controls.activation[m], asked.activation[m] });
-  controller_.assembled().renew(most, !same_poses(asked.bone, motion_.controls.bone),
-                                controller_.state().frequency_squared, search);
+  controller_.renew_assembled(most, !same_poses(asked.bone, motion_.controls.bone), search);
 }
 
 // Makes a plan that ends with the controls `next`, and advances the muscles' activations to its end.
@@ -217,7 +217,7 @@ StepPlan TimeStepper::plan_to(const Controls& next, const TimeStepController::Ch
   const bool switched = controller_.muscles_switched(before, motion_.activation);
   plan.bound_every_step = choice.bound_every_step || switched;
   plan.bound_awaited = choice.bound_awaited || switched;
-  plan.alarming_frequency_squared = controller_.alarming_frequency_squared();
+  plan.alarming = controller_.alarming();
   plan.relaxation.assign(plan.steps, 0);
   double elapsed = 0;
   for (int step = 0; step < plan.steps && effects_.running().has(Effect::viscosity); ++step)
@@ -306,7 +306,7 @@ void TimeStepper::switch_effect(Effect effect, bool on)
   if (is_of_fibres(effect))
   {
     discretisation_.bound(effects_.running());
-    controller_.set_rest_frequency(discretisation_.frequency_squared_max);
+    controller_.set_bound_at_rest(discretisation_.frequency_squared_max);
   }
   effects_switched({ effect });
 }
@@ -319,7 +319,6 @@ void TimeStepper::effects_switched(const std::vector<Effect>& effects)
     ledger_->effects_switched();
   if (motion_.diverged)
     return;
-  controller_.assembled().discard();
   if (std::any_of(effects.begin(), effects.end(), is_of_fibres))
     displacements_were_set();
   else
@@ -354,8 +353,9 @@ Monitor TimeStepper::monitor()
 {
   const Stopwatch stopwatch(profile_.monitor);
   Monitor result = backend_->monitor();
-  result.step_share =
-      motion_.latest_step * std::sqrt(controller_.state().assembled.share()) / result.critical_time_step;
+  result.critical_time_step =
+      controller_.critical_step_at(4 / (result.critical_time_step * result.critical_time_step));
+  result.step_share = motion_.latest_step / result.critical_time_step;
   result.lost_points = backend_->lost_points();
   if (!model_->sliding.empty() && result.finite && effects_.running().has(Effect::sliding))
   {
