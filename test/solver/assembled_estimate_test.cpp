@@ -9,18 +9,19 @@ using namespace frontalis;
 namespace
 {
 
-constexpr double rest = 4e10;  // bound of the squared frequency at nodes [1/s2]
+constexpr double bound = 4e10;        // of the squared frequency at nodes at rest [1/s2]
+constexpr double soft = 0.1 * bound;  // squared frequency of the assembled model at rest [1/s2]
 
 struct Search
 {
-  double found = 0.5 * rest;
+  double found = soft;
   int searches = 0;
   float activation = -1;  // of the latest search
   bool moving = false;
 
-  void renew(AssembledEstimate& estimate, float present, double bound = rest)
+  void renew(AssembledEstimate& estimate, float present, double growth = 0)
   {
-    estimate.renew({ present }, moving, bound,
+    estimate.renew({ present }, moving, growth, bound,
                    [this](const std::vector<float>& at)
                    {
                      ++searches;
@@ -29,14 +30,14 @@ struct Search
                    });
   }
   // The number of steps until the next search, in plans of 10 steps.
-  int steps_until_next(AssembledEstimate& estimate, float present, double bound = rest)
+  int steps_until_next(AssembledEstimate& estimate, float present, double growth = 0)
   {
     const int before = searches;
     int steps = 0;
     for (; searches == before && steps < 10000; steps += searches == before ? 10 : 0)
     {
       estimate.steps_taken(10);
-      renew(estimate, present, bound);
+      renew(estimate, present, growth);
     }
     return steps + 10;
   }
@@ -48,26 +49,50 @@ TEST(AssembledEstimate, is_found_at_first_and_then_ever_more_rarely)
 {
   AssembledEstimate estimate;
   Search search;
-  EXPECT_EQ(estimate.frequency_squared(rest), rest);
+  EXPECT_FALSE(estimate.known());
   search.renew(estimate, 0);
   EXPECT_EQ(search.searches, 1);
   EXPECT_EQ(search.activation, 0);
-  EXPECT_DOUBLE_EQ(estimate.frequency_squared(rest), 1.25 * 0.5 * rest) << "a wide margin at first";
-  EXPECT_DOUBLE_EQ(estimate.frequency_squared(0.8 * rest), 1.25 * 0.5 * rest) << "it does not fall with the bound";
-  EXPECT_DOUBLE_EQ(estimate.bound_covered(0.8 * rest), rest);
-  EXPECT_DOUBLE_EQ(estimate.frequency_squared(2 * rest), 1.25 * rest) << "it grows with it";
+  EXPECT_DOUBLE_EQ(estimate.frequency_squared(0), 1.25 * soft) << "a wide margin at first";
   for (const int steps : { 200, 400, 800, 1600, 2000, 2000 })
     EXPECT_EQ(search.steps_until_next(estimate, 0), steps);
-  EXPECT_DOUBLE_EQ(estimate.frequency_squared(rest), 1.1 * 0.5 * rest);
+  EXPECT_DOUBLE_EQ(estimate.frequency_squared(0), 1.1 * soft);
 }
 
-TEST(AssembledEstimate, is_found_again_where_the_bound_has_grown)
+TEST(AssembledEstimate, grows_by_no_more_than_the_stiffness_of_voxels)
 {
   AssembledEstimate estimate;
   Search search;
   search.renew(estimate, 0);
-  EXPECT_EQ(search.steps_until_next(estimate, 0, 1.11 * rest), 100) << "but not at once";
-  EXPECT_EQ(search.steps_until_next(estimate, 0, 1.2 * rest), 200);
+  EXPECT_DOUBLE_EQ(estimate.frequency_squared(0.3 * soft), (1.25 + 0.3) * soft);
+  EXPECT_DOUBLE_EQ(estimate.covered(0.3 * soft), (1.25 + 0.3) * soft);
+  // A search finds that the model has stiffened by less.
+  search.steps_until_next(estimate, 0, 0.75 * soft);
+  EXPECT_DOUBLE_EQ(estimate.frequency_squared(0.75 * soft), 1.25 * soft);
+  EXPECT_DOUBLE_EQ(estimate.frequency_squared(0.1 * soft), 1.25 * soft) << "it does not fall with the growth";
+  EXPECT_DOUBLE_EQ(estimate.frequency_squared(1.75 * soft), 1.25 * soft * 3 / 2) << "it rises in proportion";
+}
+
+TEST(AssembledEstimate, is_found_again_where_stiffness_has_grown)
+{
+  AssembledEstimate estimate;
+  Search search;
+  search.renew(estimate, 0);
+  EXPECT_EQ(search.steps_until_next(estimate, 0, 0.33 * soft), 30) << "but not at once";
+  EXPECT_EQ(search.steps_until_next(estimate, 0, 0.6 * soft), 200);
+}
+
+TEST(AssembledEstimate, is_found_at_equal_times_while_steps_are_long)
+{
+  for (const double step : { 1e-3, 3.2e-4, 1e-4, 1e-5 })
+  {
+    AssembledEstimate estimate;
+    Search search;
+    search.found = std::min(bound, 4 / (step * step));
+    search.renew(estimate, 0);
+    const int steps = search.steps_until_next(estimate, 0);
+    EXPECT_EQ(steps, step > 4e-4 ? 50 : step > 2e-4 ? 70 : 200) << step;
+  }
 }
 
 TEST(AssembledEstimate, falls_slowly_and_is_found_often_meanwhile)
@@ -75,18 +100,19 @@ TEST(AssembledEstimate, falls_slowly_and_is_found_often_meanwhile)
   AssembledEstimate estimate;
   Search search;
   search.renew(estimate, 0);
-  double before = estimate.frequency_squared(rest);
-  // The search meets tissue in a soft moment, in which its bound is low, too.
-  search.found = 0.1 * rest;
+  double before = estimate.frequency_squared(0);
+  search.found = 0.2 * soft;  // in a moment in which the tissue is soft
   for (int i = 0; i < 4; ++i)
   {
-    EXPECT_EQ(search.steps_until_next(estimate, 0, 0.8 * rest), 200);
-    EXPECT_DOUBLE_EQ(estimate.frequency_squared(0.8 * rest), 0.7 * before);
+    EXPECT_EQ(search.steps_until_next(estimate, 0), 200);
+    EXPECT_DOUBLE_EQ(estimate.frequency_squared(0), 0.7 * before);
     before *= 0.7;
   }
-  search.found = 0.3 * rest;
-  search.steps_until_next(estimate, 0, 0.8 * rest);
-  EXPECT_DOUBLE_EQ(estimate.frequency_squared(0.8 * rest), 1.25 * 0.3 * rest) << "it rises at once";
+  EXPECT_DOUBLE_EQ(estimate.softest(), before);
+  search.found = 0.3 * bound;
+  search.steps_until_next(estimate, 0);
+  EXPECT_DOUBLE_EQ(estimate.frequency_squared(0), 1.25 * 0.3 * bound) << "it rises at once";
+  EXPECT_DOUBLE_EQ(estimate.softest(), before);
 }
 
 TEST(AssembledEstimate, looks_ahead_while_activations_grow)
@@ -105,7 +131,6 @@ TEST(AssembledEstimate, looks_ahead_while_activations_grow)
   EXPECT_EQ(search.activation, 1);
   EXPECT_EQ(search.steps_until_next(estimate, 0.95F), 200) << "what muscles pull stiffens later";
   EXPECT_FLOAT_EQ(search.activation, 0.97F);
-  EXPECT_DOUBLE_EQ(estimate.share(), 1.25 * 0.5);
 }
 
 TEST(AssembledEstimate, looks_as_far_ahead_as_before_when_tissue_has_stiffened)
@@ -114,10 +139,10 @@ TEST(AssembledEstimate, looks_as_far_ahead_as_before_when_tissue_has_stiffened)
   Search search;
   search.renew(estimate, 0);
   search.renew(estimate, 0.3F);
-  EXPECT_EQ(search.steps_until_next(estimate, 0.4F, 1.2 * rest), 100);
+  EXPECT_EQ(search.steps_until_next(estimate, 0.4F, 0.4 * soft), 30);
   EXPECT_EQ(search.searches, 3);
   EXPECT_FLOAT_EQ(search.activation, 0.8F);
-  search.renew(estimate, 0.7F, 1.2 * rest);
+  search.renew(estimate, 0.7F, 0.4 * soft);
   EXPECT_EQ(search.searches, 3) << "the activations of the search before still cover these";
 }
 
@@ -149,20 +174,20 @@ TEST(AssembledEstimate, is_never_above_the_bound_and_takes_no_bad_number)
 {
   AssembledEstimate estimate;
   Search search;
-  search.found = 2 * rest;
+  search.found = 2 * bound;
   search.renew(estimate, 0);
-  EXPECT_EQ(estimate.frequency_squared(rest), rest);
+  EXPECT_EQ(estimate.frequency_squared(0), bound);
   for (const double bad : { std::nan(""), 0.0 })
   {
     search.found = bad;
     search.steps_until_next(estimate, 0);
-    EXPECT_EQ(estimate.frequency_squared(rest), rest);
+    EXPECT_EQ(estimate.frequency_squared(0), bound);
   }
-  search.found = 0.5 * rest;
+  search.found = soft;
   search.steps_until_next(estimate, 0);
-  EXPECT_LT(estimate.share(), 1);
+  EXPECT_LT(estimate.frequency_squared(0), bound);
   estimate.discard();
-  EXPECT_EQ(estimate.frequency_squared(rest), rest);
+  EXPECT_FALSE(estimate.known());
   const int before = search.searches;
   search.renew(estimate, 0);
   EXPECT_EQ(search.searches, before + 1);

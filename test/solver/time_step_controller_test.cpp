@@ -13,6 +13,7 @@ namespace
 constexpr double rest = 4e10;      // squared frequency at rest [1/s2]
 constexpr double critical = 1e-5;  // [s]
 constexpr double forever = 1e9;    // [s]
+constexpr auto by_bound = TimeStepEstimate::element, by_model = TimeStepEstimate::assembled;
 constexpr double unlimited = std::numeric_limits<double>::infinity();
 
 BackendTraits traits()
@@ -37,7 +38,7 @@ bool is_calm(const TimeStepController& controller)
 bool is_cautious(const TimeStepController& controller)
 {
   const auto choice = choose(controller);
-  const double step = 0.55 * 2 / std::sqrt(controller.state().frequency_squared);
+  const double step = 0.55 * 2 / std::sqrt(controller.state().measured);
   return choice.bound_every_step && choice.bound_awaited && choice.steps == 8 && choice.dt <= 1.000001 * step;
 }
 
@@ -54,18 +55,18 @@ int steps_until_calm(TimeStepController& controller)
 
 TEST(TimeStepController, takes_a_share_of_the_critical_step_or_a_fixed_one)
 {
-  EXPECT_DOUBLE_EQ(TimeStepController(rest, 0.9, 0).safe_step(), 0.9 * critical);
-  TimeStepController fixed(rest, 0.9, 0.99 * critical);
+  EXPECT_DOUBLE_EQ(TimeStepController(rest, by_bound, 0.9, 0).safe_step(), 0.9 * critical);
+  TimeStepController fixed(rest, by_bound, 0.9, 0.99 * critical);
   EXPECT_DOUBLE_EQ(fixed.safe_step(), 0.99 * critical);
   fixed.observe(4 * rest, 1);
   EXPECT_DOUBLE_EQ(fixed.safe_step(), critical / 2) << "no longer than critical";
   for (const double refused : { 1.01 * critical, -critical, std::nan("") })
-    EXPECT_THROW(TimeStepController(rest, 0.9, refused), Error);
+    EXPECT_THROW(TimeStepController(rest, by_bound, 0.9, refused), Error);
 }
 
 TEST(TimeStepController, divides_a_motion_into_equal_steps_that_end_with_it)
 {
-  const TimeStepController controller(rest, 0.9, 0);
+  const TimeStepController controller(rest, by_bound, 0.9, 0);
   for (const double seconds : { 1e-7, 8.9e-6, 9e-6, 9.1e-6, 5e-4, 1.7e-3 })
   {
     double left = seconds;
@@ -86,7 +87,7 @@ TEST(TimeStepController, divides_a_motion_into_equal_steps_that_end_with_it)
 
 TEST(TimeStepController, plans_last_as_long_as_the_backend_likes)
 {
-  const TimeStepController controller(rest, 0.9, 0);
+  const TimeStepController controller(rest, by_bound, 0.9, 0);
   BackendTraits backend;
   EXPECT_EQ(controller.choose(forever, unlimited, backend).steps, 32);
   backend.most_steps_per_plan = 128;
@@ -100,14 +101,14 @@ TEST(TimeStepController, plans_last_as_long_as_the_backend_likes)
 
 TEST(TimeStepController, follows_what_stiffens_at_once_and_what_softens_slowly)
 {
-  TimeStepController controller(rest, 0.9, 0);
+  TimeStepController controller(rest, by_bound, 0.9, 0);
   controller.observe(1.05 * rest, 32);
   EXPECT_DOUBLE_EQ(controller.safe_step(), 0.9 * critical / std::sqrt(1.05));
   EXPECT_TRUE(is_calm(controller));
   controller.observe(2 * rest, 32);
   EXPECT_DOUBLE_EQ(controller.safe_step(), 0.9 * critical / std::sqrt(2.0));
   controller.observe(1.2 * rest, 32);
-  EXPECT_DOUBLE_EQ(controller.state().frequency_squared, 0.95 * 2 * rest);
+  EXPECT_DOUBLE_EQ(controller.state().measured, 0.95 * 2 * rest);
   for (int plan = 0; plan < 100; ++plan)
     controller.observe(0.5 * rest, 32);
   EXPECT_DOUBLE_EQ(controller.safe_step(), 0.9 * critical) << "never longer than at rest";
@@ -115,29 +116,29 @@ TEST(TimeStepController, follows_what_stiffens_at_once_and_what_softens_slowly)
 
 TEST(TimeStepController, is_cautious_after_signs_of_fast_change)
 {
-  TimeStepController stiffened(rest, 0.9, 0);
+  TimeStepController stiffened(rest, by_bound, 0.9, 0);
   stiffened.observe(1.09 * rest, 32);
   EXPECT_TRUE(is_calm(stiffened));
-  EXPECT_GT(1.21 * rest, stiffened.alarming_frequency_squared());
+  EXPECT_GT(1.21 * rest, stiffened.alarming());
   stiffened.observe(1.21 * rest, 32);
   EXPECT_TRUE(is_cautious(stiffened));
   EXPECT_EQ(steps_until_calm(stiffened), 128);
 
-  TimeStepController switched(rest, 0.9, 0);
+  TimeStepController switched(rest, by_bound, 0.9, 0);
   EXPECT_FALSE(switched.muscles_switched({ 0, 0.5f }, { 0.29f, 0.25f }));
   EXPECT_TRUE(is_calm(switched));
   EXPECT_TRUE(switched.muscles_switched({ 0, 0.5f }, { 0, 0.1f }));
   EXPECT_TRUE(is_cautious(switched));
   EXPECT_EQ(steps_until_calm(switched), 48);
 
-  TimeStepController jumped(rest, 0.9, 0);
+  TimeStepController jumped(rest, by_bound, 0.9, 0);
   jumped.bone_jumped();
   EXPECT_TRUE(is_cautious(jumped));
   EXPECT_FALSE(jumped.muscles_switched({ 0 }, { 0 }));
   jumped.observe(1.2 * rest, 900);
   EXPECT_EQ(steps_until_calm(jumped), 128) << "what lasts longer counts";
 
-  TimeStepController set(rest, 0.9, 0);
+  TimeStepController set(rest, by_bound, 0.9, 0);
   set.displacements_set(3 * rest);
   EXPECT_DOUBLE_EQ(set.safe_step(), 0.9 * critical / std::sqrt(3.0));
   EXPECT_TRUE(is_cautious(set));
@@ -147,12 +148,12 @@ TEST(TimeStepController, is_cautious_after_signs_of_fast_change)
 
 TEST(TimeStepController, takes_shorter_steps_while_stiffened_tissue_vibrates)
 {
-  TimeStepController controller(rest, 0.9, 0);
+  TimeStepController controller(rest, by_bound, 0.9, 0);
   // A contraction slowly makes the model five times as stiff.
   for (double squared = rest; squared < 5 * rest; squared *= 1.03)
     controller.observe(squared, 32);
   EXPECT_TRUE(is_calm(controller));
-  const double squared = controller.state().frequency_squared;
+  const double squared = controller.state().measured;
   controller.observe(0.9 * squared, 32);
   const auto choice = choose(controller);
   EXPECT_FALSE(choice.bound_every_step);
@@ -163,7 +164,7 @@ TEST(TimeStepController, takes_shorter_steps_while_stiffened_tissue_vibrates)
     controller.observe(0.9 * squared, 1);
   EXPECT_TRUE(is_calm(controller));
   // Near the stiffness at rest, changes of the same relative size do not count as a vibration.
-  TimeStepController soft(rest, 0.9, 0);
+  TimeStepController soft(rest, by_bound, 0.9, 0);
   for (const double share : { 1.0, 0.9, 1.0, 0.9 })
     soft.observe(share * rest, 32);
   EXPECT_TRUE(is_calm(soft));
@@ -171,7 +172,7 @@ TEST(TimeStepController, takes_shorter_steps_while_stiffened_tissue_vibrates)
 
 TEST(TimeStepController, looks_at_every_step_where_bones_limit_it)
 {
-  const TimeStepController controller(rest, 0.9, 0);
+  const TimeStepController controller(rest, by_bound, 0.9, 0);
   const auto choice = controller.choose(forever, 1e-6, traits());
   EXPECT_NEAR(choice.dt, 1e-6, 1e-12);
   EXPECT_TRUE(choice.bound_every_step);
@@ -181,7 +182,7 @@ TEST(TimeStepController, looks_at_every_step_where_bones_limit_it)
 
 TEST(TimeStepController, slows_down_whatever_it_chooses)
 {
-  TimeStepController controller(rest, 0.9, 0);
+  TimeStepController controller(rest, by_bound, 0.9, 0);
   for (const bool cautious : { false, true })
   {
     if (cautious)
@@ -197,7 +198,7 @@ TEST(TimeStepController, slows_down_whatever_it_chooses)
 
 TEST(TimeStepController, goes_on_from_a_kept_state)
 {
-  TimeStepController one(rest, 0.9, 0), other(rest, 0.9, 0);
+  TimeStepController one(rest, by_bound, 0.9, 0), other(rest, by_bound, 0.9, 0);
   one.observe(5 * rest, 32);
   one.slow_down(0.5);
   other.restore(one.state());
@@ -207,10 +208,34 @@ TEST(TimeStepController, goes_on_from_a_kept_state)
     one.observe(share * rest, 100);
     other.observe(share * rest, 100);
     EXPECT_EQ(choose(one).steps, choose(other).steps);
-    EXPECT_EQ(one.state().frequency_squared, other.state().frequency_squared);
+    EXPECT_EQ(one.state().measured, other.state().measured);
   }
   one.slow_down(1);
   one.reset();
   EXPECT_TRUE(is_calm(one));
   EXPECT_DOUBLE_EQ(one.safe_step(), 0.9 * critical);
+}
+
+TEST(TimeStepController, follows_the_growth_since_rest_where_the_assembled_model_sets_the_step)
+{
+  TimeStepController controller(rest, by_model, 0.9, 0);
+  EXPECT_DOUBLE_EQ(controller.safe_step(), 0.9 * critical) << "from the bound at rest, before anything is found";
+  controller.observe(3 * rest, 10);
+  EXPECT_DOUBLE_EQ(controller.safe_step(), 0.9 * critical / 2);
+  controller.reset();
+  controller.renew_assembled({}, false, [](const auto&) { return 0.08 * rest; });
+  const double found = 0.1 * rest;
+  EXPECT_NEAR(controller.critical_step_at(0), critical / std::sqrt(0.1), 1e-9 * critical);
+  EXPECT_NEAR(controller.alarming(), 0.1 * found, 1e-9 * found);
+  controller.observe(0.09 * found, 10);
+  EXPECT_TRUE(is_calm(controller));
+  EXPECT_NEAR(controller.safe_step(), 0.9 * critical / std::sqrt(0.109), 1e-9 * critical);
+  controller.observe(0.25 * found, 10);
+  EXPECT_TRUE(choose(controller).bound_every_step) << "though this is a fortieth of the bound at rest";
+  for (int plan = 0; plan < 20; ++plan)
+    controller.observe(0, 10);
+  EXPECT_NEAR(controller.safe_step(), 0.9 * critical / std::sqrt(0.1), 1e-9 * critical)
+      << "it does not become negative";
+  controller.set_bound_at_rest(2 * rest);
+  EXPECT_DOUBLE_EQ(controller.safe_step(), 0.9 * critical / std::sqrt(2.0)) << "effects were switched";
 }

@@ -4,7 +4,6 @@
 #include "bake/voxels/voxel_index.hpp"
 
 #include "bake/messages.hpp"
-#include "frontalis/physics/hourglass.hpp"
 #include "frontalis/physics/materials/lookup.hpp"
 
 namespace frontalis
@@ -171,25 +170,23 @@ BoundMesh bind_mesh(const TriangleMesh& whole, bool surrounded, const Region& cr
   return bound;
 }
 
-// Modulus of plane strain at rest, E / (1 - nu^2) [Pa].
-double plane_strain_modulus(const Material& material, double* poisson)
-{
-  const double mu = physics::shear_modulus_of(material.law, material.parameters);
-  const double young = physics::young_modulus(mu, material.parameters[1]);
-  *poisson = young / (2 * mu) - 1;
-  return young / (1 - *poisson * *poisson);
-}
-
 FilmLaw film_law(const Scene& scene, const SceneFilm& film, const Model& model, const std::string& place)
 {
   FilmLaw law;
-  double base_poisson = 0;
   law.thickness = film.thickness;
   law.stretch = film.stretch;
-  law.modulus =
-      plane_strain_modulus(model.materials[index_of(scene.materials, film.material, place, "material")], &law.poisson);
-  law.base_modulus =
-      plane_strain_modulus(model.materials[index_of(scene.materials, film.base, place, "material")], &base_poisson);
+  // Modulus of plane strain at rest, E / (1 - nu^2) [Pa]. Poisson's ratio is the scene's, even if the profile limits
+  // bulk moduli, so that lines do not depend on the profile.
+  const auto plane_strain_modulus = [&](const std::string& name, double& poisson)
+  {
+    const std::size_t index = index_of(scene.materials, name, place, "material");
+    const Material& material = model.materials[index];
+    poisson = scene.materials[index].parameters.at("poisson");
+    return 2 * physics::shear_modulus_of(material.law, material.parameters) / (1 - poisson);
+  };
+  double base_poisson = 0;
+  law.modulus = plane_strain_modulus(film.material, law.poisson);
+  law.base_modulus = plane_strain_modulus(film.base, base_poisson);
   if (law.modulus < 10 * law.base_modulus)
     throw failure(
         "{}: film '{}' is {:.3g} times as stiff as its base '{}'; lines need a film at least 10 times as stiff", place,

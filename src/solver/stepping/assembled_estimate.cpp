@@ -38,6 +38,8 @@ std::int64_t steps_in_motion(double frequency_squared)
 
 double AssembledEstimate::covered(double growth) const { return found_ + std::max(growth, growth_); }
 
+bool AssembledEstimate::in_motion() const { return known() && steps_valid_ < longest_valid; }
+
 double AssembledEstimate::frequency_squared(double growth) const
 {
   return found_ * (covered(growth) / (found_ + growth_));
@@ -52,8 +54,8 @@ void AssembledEstimate::renew(const std::vector<float>& activation, bool moving,
     activated = activated || activation[m] > activation_[m];
   if (moving)
     steps_valid_ = std::min(steps_valid_, steps_in_motion(found_));
-  const bool grown = known() && covered(growth) > growth_allowed * (found_ + growth_) &&
-                     steps_ >= steps_until_growth_counts;
+  const bool grown =
+      known() && covered(growth) > growth_allowed * (found_ + growth_) && steps_ >= steps_until_growth_counts;
   if (known() && !activated && !grown && steps_ < steps_valid_)
     return;
   // A search after growth keeps the activations, because they may be on their way to those.

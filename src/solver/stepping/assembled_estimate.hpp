@@ -28,6 +28,8 @@ public:
   /// What the latest search found, with its margin, and the least that a search has found.
   double found() const { return found_; }
   double softest() const { return softest_; }
+  /// Whether tissue may still be stiffening after a change of activations or poses.
+  bool in_motion() const;
   void steps_taken(int steps) { steps_ += steps; }
   /// Searches if this is due. `activation`: the largest activations until the next call. `moving`: whether bones move,
   /// so that tissue stiffens where no muscle acts. `growth`: at present. `most`: bound at rest, the estimate if the
@@ -35,10 +37,7 @@ public:
   void renew(const std::vector<float>& activation, bool moving, double growth, double most, const Search& search);
   /// Forgets what was found. Call it when displacements were set from outside.
   void discard();
-  void archive(ByteArchive& archive)
-  {
-    archive(found_)(growth_)(softest_)(steps_)(steps_valid_)(activation_);
-  }
+  void archive(ByteArchive& archive) { archive(found_)(growth_)(softest_)(steps_)(steps_valid_)(activation_); }
 
 private:
   double found_ = 0;               // [1/s2]; 0: unknown

@@ -88,10 +88,7 @@ void TimeStepController::slow_down(double share)
   slow_share_ = share;
 }
 
-double TimeStepController::alarming() const
-{
-  return growth_between_plans * covered(state_.measured) - not_measured();
-}
+double TimeStepController::alarming() const { return growth_between_plans * covered(state_.measured) - not_measured(); }
 
 TimeStepController::Choice TimeStepController::choose(double remaining, double longest,
                                                       const BackendTraits& backend) const
@@ -110,12 +107,13 @@ TimeStepController::Choice TimeStepController::choose(double remaining, double l
   // Without the tolerance, a rounding error could add a step.
   const double steps_left = std::ceil(remaining / std::min(dt, longest) * (1 - 1e-9));
   return { static_cast<int>(std::min<double>(steps_left, most_steps)), remaining / steps_left, steps_left <= most_steps,
-           cautious, cautious || vibrates };
+           cautious, cautious || vibrates || state_.assembled.in_motion() };
 }
 
 void TimeStepController::observe(double measured, int steps)
 {
-  const double now = covered(measured), at_rest = state_.assembled.known() ? state_.assembled.softest() : bound_at_rest_;
+  const double now = covered(measured),
+               at_rest = state_.assembled.known() ? state_.assembled.softest() : bound_at_rest_;
   const bool changes = std::abs(now - state_.latest_covered) > vibration_change * state_.latest_covered;
   const bool vibrates = changes && frequency_squared(measured) > stiffening_ratio * at_rest;
   const bool stiffens = measured > alarming();

@@ -353,8 +353,7 @@ Monitor TimeStepper::monitor()
 {
   const Stopwatch stopwatch(profile_.monitor);
   Monitor result = backend_->monitor();
-  result.critical_time_step =
-      controller_.critical_step_at(4 / (result.critical_time_step * result.critical_time_step));
+  result.critical_time_step = controller_.critical_step_at(4 / (result.critical_time_step * result.critical_time_step));
   result.step_share = motion_.latest_step / result.critical_time_step;
   result.lost_points = backend_->lost_points();
   if (!model_->sliding.empty() && result.finite && effects_.running().has(Effect::sliding))
