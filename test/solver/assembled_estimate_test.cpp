@@ -183,8 +183,12 @@ TEST(AssembledEstimate, is_never_above_the_bound_and_takes_no_bad_number)
     search.steps_until_next(estimate, 0);
     EXPECT_EQ(estimate.frequency_squared(0), bound);
   }
+  search.found = 2 * bound;
+  search.steps_until_next(estimate, 0, 0.7 * bound);
+  EXPECT_DOUBLE_EQ(estimate.frequency_squared(0.7 * bound), 1.7 * bound) << "what has grown may exceed that at rest";
   search.found = soft;
-  search.steps_until_next(estimate, 0);
+  for (int i = 0; i < 20; ++i)
+    search.steps_until_next(estimate, 0);
   EXPECT_LT(estimate.frequency_squared(0), bound);
   estimate.discard();
   EXPECT_FALSE(estimate.known());

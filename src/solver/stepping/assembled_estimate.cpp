@@ -68,7 +68,7 @@ void AssembledEstimate::renew(const std::vector<float>& activation, bool moving,
   else
     steps_valid_ = std::min(2 * steps_valid_, longest_valid);
   const double allowance = steps_valid_ < longest_valid ? margin_in_motion : frequency_margin;
-  found_ = squared > 0 && std::isfinite(squared) ? std::min(most, allowance * squared) : most;
+  found_ = squared > 0 && std::isfinite(squared) ? std::min(most + growth, allowance * squared) : most + growth;
   if (found_ < least)
   {
     found_ = least;

@@ -32,8 +32,8 @@ public:
   bool in_motion() const;
   void steps_taken(int steps) { steps_ += steps; }
   /// Searches if this is due. `activation`: the largest activations until the next call. `moving`: whether bones move,
-  /// so that tissue stiffens where no muscle acts. `growth`: at present. `most`: bound at rest, the estimate if the
-  /// search finds no number.
+  /// so that tissue stiffens where no muscle acts. `growth`: at present. `most`: bound at rest. With the growth
+  /// it is the largest estimate, and the one if the search finds no number.
   void renew(const std::vector<float>& activation, bool moving, double growth, double most, const Search& search);
   /// Forgets what was found. Call it when displacements were set from outside.
   void discard();
