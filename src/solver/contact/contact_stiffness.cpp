@@ -19,24 +19,33 @@ namespace
 
 // Contact may be up to `stiffest_factor` times as stiff as its law says where this does not shorten the time step,
 // because thin tissue on bone resists a finger several times as much as its Young's modulus suggests. The squared
-// frequency bounds of the nodes in contact stay below `share_of_largest` of the model's largest bound.
+// frequencies of the nodes in contact stay below `share_of_largest` of the model's largest, by the measure by which
+// steps are chosen: the bound at nodes or, for assembled steps, `wave_stiffness`.
 constexpr double stiffest_factor = 10;
 constexpr double share_of_largest = 0.95;
-// replaces `share_of_largest` where the assembled model sets the time step: its squared frequency is a third to a sixth
-// of the largest bound, which counts what nearly incompressible voxels resist three times, but contact only once.
-constexpr double share_of_assembled = 0.25;
 
 // Upper limit of the stiffness of contact at a node, divided by the stiffness on a flat side of whole voxels with as
 // much tissue. The limit is needed because points far outside of their voxel have large weights, and because many
 // points may be bound to a voxel with little tissue.
 constexpr double stiffest_node = 2;
 
-double young_modulus(const VoxelProperties& voxel)
+double shear_modulus(const VoxelProperties& voxel)
 {
   double shear = voxel.mu;
   for (const LawPart& part : voxel.laws)
     shear += part.weight * part.stiffness_at_rest;
-  return physics::young_modulus(shear, voxel.kappa);
+  return shear;
+}
+
+double young_modulus(const VoxelProperties& voxel) { return physics::young_modulus(shear_modulus(voxel), voxel.kappa); }
+
+// Stiffness [N/m] of a voxel in a plane wave along its shortest edge, without muscles and contact. In assembled voxels
+// a squared frequency is about the sum of these figures at a node, divided by the node's mass. The bound at nodes, in
+// contrast, counts what a voxel resists to a change of volume three times, and every muscle at full activation.
+double wave_stiffness(const VoxelProperties& voxel, double shortest_edge)
+{
+  const double modulus = voxel.kappa + 4.0 / 3 * shear_modulus(voxel);
+  return 0.5 * modulus * voxel.tissue_volume / (shortest_edge * shortest_edge);
 }
 
 }  // namespace
@@ -97,27 +106,30 @@ void ContactStiffness::stiffen(const Model& model, const Discretisation& discret
 {
   if (bodies_ == 0)
     return;
-  // `of_voxels`: bound of each node's stiffness without contact; `squared`: bound of its squared frequency with
-  // contact, 0 for held nodes.
-  std::vector<double> of_voxels(model.nodes.size(), 0), squared(model.nodes.size(), 0);
+  // For each node: `of_voxels`, the bound of its stiffness without contact; `resists`, the measure of this stiffness by
+  // which steps are chosen; `squared`, the measure of its squared frequency with contact, 0 for held nodes.
+  const bool assembled = model.time_step_estimate == TimeStepEstimate::assembled;
+  const double edge = *std::min_element(model.spacing.begin(), model.spacing.end());
+  std::vector<double> of_voxels(model.nodes.size(), 0), resists(of_voxels), squared(of_voxels);
   VoxelProperties properties;
   for (std::size_t e = 0; e < model.voxels.size(); ++e)
   {
     discretisation.voxel(e, properties);
     const double own = properties.stiffness - in_voxel(e);
+    const double measure = assembled ? wave_stiffness(properties, edge) : own;
     for (const auto node : model.voxel_nodes[e])
     {
       of_voxels[node] += own;
-      squared[node] += properties.stiffness / discretisation.node_mass[node];
+      resists[node] += measure;
+      squared[node] += (measure + in_voxel(e)) / discretisation.node_mass[node];
     }
     voxels_[e] = static_cast<float>(own);
   }
   for (const auto node : discretisation.held)
     squared[node] = 0;
-  // The bound of a voxel may grow by the smallest factor that all nodes of the voxel and of its neighbours allow. Then
-  // no node's bound is too large.
-  const bool assembled = model.time_step_estimate == TimeStepEstimate::assembled;
-  const double limit = (assembled ? share_of_assembled : share_of_largest) * discretisation.frequency_squared_max;
+  const double limit = share_of_largest * *std::max_element(squared.begin(), squared.end());
+  // The measure at a node may grow by the smallest factor that all nodes of its voxels and of their neighbours allow.
+  // Then no node's measure is too large.
   std::vector<double> growth(model.nodes.size(), std::numeric_limits<double>::max());
   for (const auto& nodes : model.voxel_nodes)
   {
@@ -133,7 +145,7 @@ void ContactStiffness::stiffen(const Model& model, const Discretisation& discret
     {
       double factor = stiffest_factor;
       for (const auto node : model.voxel_nodes[surfaces_[c].binding->voxel[p]])
-        factor = std::min(factor, 1 + (growth[node] - 1) * of_voxels[node] / added[node]);
+        factor = std::min(factor, 1 + (growth[node] - 1) * resists[node] / added[node]);
       surfaces_[c].points[p] *= static_cast<float>(factor);
     }
   share_out(model, of_voxels);
