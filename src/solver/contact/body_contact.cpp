@@ -198,13 +198,17 @@ void BodyContact<Real>::before_step(const NodeShare& share, const Real* const u[
       continue;
     chunk = { std::numeric_limits<double>::max(), 0 };
     const std::size_t first = c * chunk_size, last = std::min(first + chunk_size, points_.size());
-    std::uint32_t wanted = 0;
+    // A point that has touched has been due ever since. Its force is found in any case, so that its distance is not.
+    std::uint32_t wanted = 0, away_before = 0;
     for (std::size_t p = first; p < last; ++p)
       if (!(due_[p] > now.front().way))
+      {
         wanted |= 1U << (p - first);
+        away_before |= due_[p] > 0 ? 1U << (p - first) : 0;
+      }
     Real distance[chunk_size];
-    if (blocks_.present() && wanted != 0)
-      blocks_.find(c, u, bodies, wanted, distance);
+    if (blocks_.present() && away_before != 0)
+      blocks_.find(c, u, bodies, away_before, distance);
     for (std::size_t p = first; p < last; ++p)
     {
       if ((wanted >> (p - first) & 1) == 0)
@@ -212,9 +216,9 @@ void BodyContact<Real>::before_step(const NodeShare& share, const Real* const u[
         chunk.due = std::min(chunk.due, due_[p]);
         continue;
       }
-      const double away = blocks_.present() ? double(distance[p - first]) - distance_error : 0;
-      // A point that has touched has been due ever since.
-      if (away > 0 && due_[p] > 0)
+      const bool found = blocks_.present() && (away_before >> (p - first) & 1) != 0;
+      const double away = found ? double(distance[p - first]) - distance_error : 0;
+      if (away > 0)
         due_[p] = now.front().way + away / (physics::steepest_field * spread_[p]);
       else
         find_force(p, u, now[points_[p].body], response);
