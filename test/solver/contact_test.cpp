@@ -86,6 +86,40 @@ TEST_P(BodiesTouch, a_body_that_comes_from_far_is_met)
   EXPECT_NEAR(far->reactions()[0].force[2], expected, 1e-3 * expected);
 }
 
+// A point far outside of its voxel moves many times as far as the voxel's nodes, and must be evaluated as early.
+TEST_P(BodiesTouch, a_point_far_outside_its_voxel_is_met)
+{
+  Model model = block_and_finger(0);
+  Contact& contact = model.contacts[0];
+  const std::size_t p = contact.points.size() / 2;
+  contact.points = { contact.points[p] };
+  contact.points[0][2] += 20 * model.spacing[2];
+  contact.area = { contact.area[p] };
+  contact.binding = { { contact.binding.voxel[p] }, { contact.binding.coordinates[p] } };
+  contact.binding.coordinates[0][2] = 21;
+  contact.field = plate(contact.points[0][2] + 1e-3, 1);
+  const auto solver = make(model);
+  // The upper plane of the voxel moves upwards and carries the point with it, 21 times as fast.
+  Vectors v(model.nodes.size());
+  for (std::size_t n = 0; n < v.size(); ++n)
+    v[n][2] = model.nodes[n][2] == model.size[2] ? 5 : 0;
+  solver->set_velocities(v);
+  double z = 0;
+  for (int step = 0; step < 100 && z < 1.1e-3; ++step)
+  {
+    EXPECT_EQ(solver->reactions()[0].force[2], 0);
+    solver->advance(10e-6, solver->controls());
+    const Vectors u = displacements(*solver);
+    const auto& nodes = model.voxel_nodes[contact.binding.voxel[0]];
+    z = 0;
+    for (int corner = 0; corner < 4; ++corner)
+      z += (21 * u[nodes[corner + 4]][2] - 20 * u[nodes[corner]][2]) / 4;
+  }
+  EXPECT_GT(z, 1.1e-3);
+  solver->advance(20e-6, solver->controls());
+  EXPECT_NE(solver->reactions()[0].force[2], 0);
+}
+
 // The edge of a wedge jumps into the tissue by a voxel and out again. The tissue then returns to its shape.
 TEST_P(BodiesTouch, a_sharp_edge_jumps_in_and_comes_out)
 {

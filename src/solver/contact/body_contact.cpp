@@ -46,6 +46,7 @@ BodyContact<Real>::BodyContact(const Model& model, const Discretisation& discret
     ++plane_points_[model.voxels[point.voxel][2] + 1];
     bound.voxel.push_back(point.voxel);
     bound.coordinates.push_back(point.coordinates);
+    spread_.push_back(spread_at(point.coordinates));
   }
   std::partial_sum(plane_points_.begin(), plane_points_.end(), plane_points_.begin());
   nodes_ = BoundNodeWay(model, bound);
@@ -86,6 +87,7 @@ void BodyContact<Real>::list_arrays(ArrayList& list)
   const Effect effect = Effect::contact;
   list.add(effect, "points", points_);
   list.add(effect, "points", plane_points_);
+  list.add(effect, "points", spread_);
   blocks_.list_arrays(list);
   nodes_.list_arrays(list, effect);
   list.add(effect, "bodies", fields_);
@@ -138,7 +140,7 @@ std::vector<BodyState> BodyContact<Real>::next(const ConstraintStep& step) const
     begin_step(now[b], bodies_[b].dt, step.dt);
     way = std::max(way, longest_way(bodies_[b].pose, now[b].pose, far_corner(model_)));
   }
-  way += bodies_.front().way + nodes_.spread() * *std::max_element(node_way_.begin(), node_way_.end());
+  way += bodies_.front().way + *std::max_element(node_way_.begin(), node_way_.end());
   for (BodyState& body : now)
     body.way = bodies_.front().dt > 0 ? way : 0;
   return now;
@@ -174,7 +176,8 @@ void BodyContact<Real>::find_force(std::size_t p, const Real* const u[3], const 
   // The value divided by the steepest slope is a lower bound of the distance from the body.
   if (touches_[p] == Touching::no)
     due_[p] = body.way + (sampled ? value.value / physics::steepest_field
-                                  : physics::distance_without_samples(field, contact.reach, x));
+                                  : physics::distance_without_samples(field, contact.reach, x)) /
+                             spread_[p];
 }
 
 template <class Real>
@@ -195,13 +198,17 @@ void BodyContact<Real>::before_step(const NodeShare& share, const Real* const u[
       continue;
     chunk = { std::numeric_limits<double>::max(), 0 };
     const std::size_t first = c * chunk_size, last = std::min(first + chunk_size, points_.size());
-    std::uint32_t wanted = 0;
+    // A point that has touched has been due ever since. Its force is found in any case, so that its distance is not.
+    std::uint32_t wanted = 0, away_before = 0;
     for (std::size_t p = first; p < last; ++p)
       if (!(due_[p] > now.front().way))
+      {
         wanted |= 1U << (p - first);
+        away_before |= due_[p] > 0 ? 1U << (p - first) : 0;
+      }
     Real distance[chunk_size];
-    if (blocks_.present() && wanted != 0)
-      blocks_.find(c, u, bodies, wanted, distance);
+    if (blocks_.present() && away_before != 0)
+      blocks_.find(c, u, bodies, away_before, distance);
     for (std::size_t p = first; p < last; ++p)
     {
       if ((wanted >> (p - first) & 1) == 0)
@@ -209,10 +216,10 @@ void BodyContact<Real>::before_step(const NodeShare& share, const Real* const u[
         chunk.due = std::min(chunk.due, due_[p]);
         continue;
       }
-      const double away = blocks_.present() ? double(distance[p - first]) - distance_error : 0;
-      // A point that has touched has been due ever since.
-      if (away > 0 && due_[p] > 0)
-        due_[p] = now.front().way + away / physics::steepest_field;
+      const bool found = blocks_.present() && (away_before >> (p - first) & 1) != 0;
+      const double away = found ? double(distance[p - first]) - distance_error : 0;
+      if (away > 0)
+        due_[p] = now.front().way + away / (physics::steepest_field * spread_[p]);
       else
         find_force(p, u, now[points_[p].body], response);
       chunk.due = std::min(chunk.due, due_[p]);

@@ -21,7 +21,8 @@ namespace frontalis
 /// sums the reactions of points in voxels of these planes. after_step() records how far the nodes have moved. Points
 /// are sorted by voxel, so that each node's forces are added in the same order for any number of threads.
 ///
-/// A point at some distance from all bodies is evaluated again only when nodes and body together have moved that far.
+/// A point at some distance from all bodies is evaluated again only when nodes and body together can have brought it
+/// nearer by that much. A point outside of its voxel moves farther than the voxel's nodes (spread_at()).
 template <class Real>
 class BodyContact : public NodePart<Real>
 {
@@ -141,6 +142,7 @@ private:
   std::vector<std::int32_t> plane_points_;
   ContactBlocks<Real> blocks_;
   BoundNodeWay nodes_;
+  std::vector<double> spread_;  // spread_at() each point
   std::vector<physics::DistanceField> fields_;
   // Values of the present step:
   std::vector<PointForce> forces_;  // one per point

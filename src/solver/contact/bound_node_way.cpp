@@ -19,18 +19,22 @@ constexpr double rounding = 1.00001;
 
 }  // namespace
 
+double spread_at(const std::array<float, 3>& coordinates)
+{
+  float weight[8], sum = 0;
+  physics::trilinear_weights(coordinates[0], coordinates[1], coordinates[2], weight);
+  for (const float w : weight)
+    sum += std::abs(w);
+  return std::max(1.0, double(sum));
+}
+
 BoundNodeWay::BoundNodeWay(const Model& model, const Binding& points)
     : plane_runs_(points.voxel.empty() ? 0 : static_cast<std::size_t>(model.size[2]) + 2, 0)
 {
   std::vector<bool> bound(model.nodes.size(), false);
   for (std::size_t p = 0; p < points.voxel.size(); ++p)
   {
-    const auto& at = points.coordinates[p];
-    float weight[8], sum = 0;
-    physics::trilinear_weights(at[0], at[1], at[2], weight);
-    for (const float w : weight)
-      sum += std::abs(w);
-    spread_ = std::max(spread_, double(sum));
+    spread_ = std::max(spread_, spread_at(points.coordinates[p]));
     for (const auto node : model.voxel_nodes[points.voxel[p]])
       bound[node] = true;
   }

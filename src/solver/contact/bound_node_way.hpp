@@ -9,6 +9,10 @@
 namespace frontalis
 {
 
+/// Largest ratio of the displacement of a point to the largest displacement of a node of its voxel; at least 1.
+/// `coordinates`: the point's position in the voxel.
+double spread_at(const std::array<float, 3>& coordinates);
+
 /// Finds how far the nodes to which points are bound move in a step.
 class BoundNodeWay
 {
@@ -19,7 +23,7 @@ public:
   /// Longest displacement [m] of a bound node of a plane in a step, from displacements before and after it.
   template <class Real>
   double in_plane(std::int32_t plane, const Real* const before[3], const Real* const after[3]) const;
-  /// Largest ratio of a point's displacement to the largest displacement of a node of its voxel.
+  /// Largest spread_at() of a point.
   double spread() const { return spread_; }
   void list_arrays(ArrayList& list, Effect effect) const;
 

@@ -68,20 +68,26 @@ public:
   }
 
   /// Finds the field of point p's body at x, in the frame of the body. Returns false where no samples are stored. The
-  /// block nearly always has the samples already, and in the cache.
-  bool sample(const physics::DistanceField& field, std::size_t p, const Vector& x,
-              physics::FieldValue<double>& value) const
+  /// block keeps the samples for the next call.
+  bool sample(const physics::DistanceField& field, std::size_t p, const Vector& x, physics::FieldValue<double>& value)
   {
     physics::FieldPoint<double> point = physics::field_point(field, x);
     if (blocks_.empty() || field.radius > 0)
       return physics::sample(field, point, value);
-    const Block& block = blocks_[p / Block::width];
+    Block& block = blocks_[p / Block::width];
     const std::size_t lane = p % Block::width;
     const double inverse_spacing = 1 / field.spacing;
     const Vector place = physics::enter_cell(inverse_spacing, point.offset, point.cell);
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      if (block.cell[axis][lane] != static_cast<Real>(point.cell[axis]))
-        return physics::sample(field, physics::field_point(field, x), value);
+    const auto is_kept = [&](std::size_t axis)
+    { return block.cell[axis][lane] == static_cast<Real>(point.cell[axis]); };
+    if (!is_kept(0) || !is_kept(1) || !is_kept(2))
+    {
+      const float* const first = field.around(point.cell);
+      for (int n = 0; n < 27; ++n)
+        block.samples[n][lane] = static_cast<Real>(first == nullptr ? Block::none : physics::gather_one(first, n));
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        block.cell[axis][lane] = static_cast<Real>(point.cell[axis]);
+    }
     physics::FieldSamples samples;
     for (std::size_t n = 0; n < 27; ++n)
       samples.value[n] = static_cast<float>(block.samples[n][lane]);

@@ -13,7 +13,7 @@ namespace frontalis
 struct BodyState : physics::PushedMotion<double>
 {
   RigidTransform pose;
-  double way;  ///< upper bound of the distance by which any point and the body have approached each other so far [m]
+  double way;  ///< sum of the longest displacements of a bound node and of a body in each step so far [m]
 };
 
 /// Pose of a body that moves with its bone.

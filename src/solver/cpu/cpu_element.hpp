@@ -199,6 +199,27 @@ struct CpuElement
     FRONTALIS_LAW void scalar_hourglass(Batch (&)[3][8]) const {}  // done in add_forces()
   };
 
+  /// Voxels with no more than neo-Hookean stress and fibres, in a step that needs neither bounds nor the work of
+  /// fibres. All of their code is inlined, so that fewer values pass through memory.
+  template <Stabilisation Form>
+  struct SimpleVoxels : VoxelsOf<Form>
+  {
+    static constexpr bool with_bound = false;
+    static bool are(const VoxelsOf<Form>& at)
+    {
+      return at.tile->simple && !at.with_bound && at.g.fibre_memory == nullptr;
+    }
+    static constexpr bool has_laws() { return false; }
+    FRONTALIS_LAW void add_laws(const Kinematics&, Stress&) const {}
+    FRONTALIS_LAW void add_viscosity(const Kinematics&, Stress&) const {}
+    FRONTALIS_LAW Batch stiffness_now(const Kinematics&) const { return Batch(Real(0)); }
+    FRONTALIS_LAW void add_fibres(const Kinematics& k, Stress& P) const
+    {
+      if (this->g.fibres != nullptr)
+        physics::add_fibres(*this, k, P);
+    }
+  };
+
   /// Calls visit() with the batches of a plane's tiles that hold voxels, as Voxels or VoxelsOf.
   template <class Batches = Voxels, class Visit>
   static FRONTALIS_LAW void each_batch(const Arguments& g, std::int32_t plane, bool owned, bool with_bound,
@@ -217,19 +238,22 @@ struct CpuElement
   template <class Number>
   static FRONTALIS_LAW void load_modes(const Voxels& at, Number* const (&u)[3], Batch (&mode)[3][8])
   {
+    load_component(at, u[0], mode[0]);
+    load_component(at, u[1], mode[1]);
+    load_component(at, u[2], mode[2]);
+  }
+  static FRONTALIS_LAW void load_component(const Voxels& at, const Real* u, Batch (&mode)[8])
+  {
     const Tile& tile = *at.tile;
     const int strip = at.offset / Tile::strip, within = at.offset % Tile::strip;
-    for (int c = 0; c < 3; ++c)
+    for (int r = 0; r < 4; ++r)
     {
-      for (int r = 0; r < 4; ++r)
-      {
-        const Real* first = u[c] + tile.node[strip][r] + within;
-        const Real* second = u[c] + tile.node[Tile::strips - 1][r];
-        mode[c][2 * r] = Lane::load(first, second);
-        mode[c][2 * r + 1] = Lane::load(first + 1, second + 1);
-      }
-      physics::walsh_hadamard(mode[c]);
+      const Real* first = u + tile.node[strip][r] + within;
+      const Real* second = u + tile.node[Tile::strips - 1][r];
+      mode[2 * r] = Lane::load(first, second);
+      mode[2 * r + 1] = Lane::load(first + 1, second + 1);
     }
+    physics::walsh_hadamard(mode);
   }
   /// Like load_modes(), with the gradients at the centroids of the tissue.
   template <class Number>
@@ -276,68 +300,61 @@ struct CpuElement
   }
 
   /// Adds the forces of the voxels, and their stiffness bounds if requested, to the plane buffers below and above.
-  template <Stabilisation Form, bool Cut>
-  static FRONTALIS_LAW void add_forces(const VoxelsOf<Form>& at, Real* below, Real* above, const std::int32_t* base)
+  template <Stabilisation Form, bool Cut, class Some>
+  static FRONTALIS_LAW void add_forces(const Some& at, Real* below, Real* above, const std::int32_t* base)
   {
     const Arguments& g = at.g;
     Batch mode[3][8], stiffness(Real(0));
     load_modes(at, g.u, mode);
     for (int c = 0; c < 3 && Cut; ++c)
       physics::to_tissue_centre(at.centre(), mode[c]);
-    const Stress P = physics::element_stress(at, mode, at.with_bound, stiffness);
+    Stress P = physics::element_stress(at, mode, at.with_bound, stiffness);
     const Batch hourglass = at.hourglass();
     if (at.with_bound)
     {
-      Batch bound[1][8];
+      Batch bound[8];
       for (int corner = 0; corner < 8; ++corner)
-        bound[0][corner] = Cut ? stiffness * at.load(g.cut[at.tile->cut].corner[corner]) : stiffness;
-      add_corners<1>(at, 3, bound, below, above, base);
+        bound[corner] = Cut ? stiffness * at.load(g.cut[at.tile->cut].corner[corner]) : stiffness;
+      add_corners(at, 3, bound, below, above, base);
     }
-    for (int c = 0; c < 3; ++c)
+    // The components are processed one by one, so that each stays in registers.
+    const auto add_component = [&](int c) __attribute__((always_inline))
     {
-      // The components are processed one by one, so that each stays in registers.
       if (Form == Stabilisation::scalar)
         physics::scalar_hourglass(hourglass, mode[c]);
       physics::stress_forces(at, P, c, mode[c]);
       if (Cut)
         physics::from_tissue_centre(at.centre(), mode[c]);
       physics::walsh_hadamard_transposed(mode[c]);
-    }
-    add_corners<3>(at, 0, mode, below, above, base);
+      add_corners(at, c, mode[c], below, above, base);
+    };
+    add_component(0);
+    add_component(1);
+    add_component(2);
   }
 
-  /// Adds components of the values at the corners of the voxels to the plane buffers, from `component` on.
-  template <int components>
-  static FRONTALIS_LAW void add_corners(const Voxels& at, int component, const Batch (&value)[components][8],
-                                        Real* below, Real* above, const std::int32_t* base)
+  /// Adds one component of the values at the corners of the voxels to the plane buffers.
+  static FRONTALIS_LAW void add_corners(const Voxels& at, int component, const Batch (&value)[8], Real* below,
+                                        Real* above, const std::int32_t* base)
   {
     const Tile& tile = *at.tile;
     const int strip = at.offset / Tile::strip, within = at.offset % Tile::strip;
-    const auto row_of = [&](int c, int r, int s)
-    { return (r < 2 ? below : above) + (component + c) * at.g.buffer_stride - base[r / 2] + tile.node[s][r]; };
-    bool joined = true;
-    for (int r = 0; r < 4; ++r)
-      joined &= tile.node[1][r] == tile.node[0][r] + Tile::strip;
-    if (Lane::two_strips && !joined)
-    {
-      // The strips may add to the same nodes, most often as neighbours along y, of which one has rows 1 and 3 where the
-      // other has 0 and 2. A load waits until an overlapping store is in the cache. Therefore many others are between.
-      FRONTALIS_UNROLL
-      for (int i = 0; i < 4; ++i)
-        for (int c = 0, r = 1 - i / 2 + 2 * (i % 2); c < components; ++c)
-          Lane::template add_strip<0>(row_of(c, r, 0), value[c][2 * r], value[c][2 * r + 1]);
-      FRONTALIS_UNROLL
-      for (int i = 0; i < 4; ++i)
-        for (int c = 0, r = 1 - i / 2 + 2 * (i % 2); c < components; ++c)
-          Lane::template add_strip<1>(row_of(c, r, 1), value[c][2 * r], value[c][2 * r + 1]);
-      return;
-    }
-    FRONTALIS_UNROLL
-    for (int i = 0; i < 4; ++i)
-      for (int c = 0, r = i / 2 + 2 * (i % 2); c < components; ++c)
-        Lane::add(row_of(c, r, strip) + within, value[c][2 * r], value[c][2 * r + 1]);
+    const auto row_of = [&](int r, int s)
+    { return (r < 2 ? below : above) + component * at.g.buffer_stride - base[r / 2] + tile.node[s][r] + within; };
+    const int other = Tile::strips - 1;
+    Lane::add(row_of(0, strip), row_of(0, other), value[0], value[1]);
+    Lane::add(row_of(2, strip), row_of(2, other), value[4], value[5]);
+    Lane::add(row_of(1, strip), row_of(1, other), value[2], value[3]);
+    Lane::add(row_of(3, strip), row_of(3, other), value[6], value[7]);
   }
-  // This function is not inlined, so that the compiler generates the same code for whole voxels as without it.
+  // The next two functions are not inlined, so that the compiler generates the same code for simple voxels as without
+  // them.
+  template <Stabilisation Form>
+  static __attribute__((noinline)) void add_other_forces(const VoxelsOf<Form>& at, Real* below, Real* above,
+                                                         const std::int32_t* base)
+  {
+    add_forces<Form, false>(at, below, above, base);
+  }
   template <Stabilisation Form>
   static __attribute__((noinline)) void add_cut_forces(const VoxelsOf<Form>& at, Real* below, Real* above,
                                                        const std::int32_t* base)

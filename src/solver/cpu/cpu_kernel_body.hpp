@@ -23,14 +23,17 @@ struct CpuKernelBody
     double work = 0;
     const std::int32_t base[2] = { g.plane_nodes[plane], g.plane_nodes[plane + 1] };
     using Batches = typename Element::template VoxelsOf<Form>;
-    Element::template each_batch<Batches>(g, plane, owned, with_bound, &work,
-                                          [&](const Batches& at)
-                                          {
-                                            if (at.tile->cut >= 0)
-                                              Element::template add_cut_forces<Form>(at, below, above, base);
-                                            else
-                                              Element::template add_forces<Form, false>(at, below, above, base);
-                                          });
+    using Simple = typename Element::template SimpleVoxels<Form>;
+    const auto add = [&](const Batches& at)
+    {
+      if (Simple::are(at))
+        Element::template add_forces<Form, false>(Simple{ at }, below, above, base);
+      else if (at.tile->cut >= 0)
+        Element::template add_cut_forces<Form>(at, below, above, base);
+      else
+        Element::template add_other_forces<Form>(at, below, above, base);
+    };
+    Element::template each_batch<Batches>(g, plane, owned, with_bound, &work, add);
     if (g.muscle_work != nullptr && owned)
       g.muscle_work[plane] += work;
   }

@@ -35,13 +35,7 @@ Monitor CpuSolver<Real>::monitor()
   std::vector<PlaneMonitor> planes(static_cast<std::size_t>(rows_.planes));
   std::vector<StepBound> bounds(slab_.size() - 1);
   std::vector<double> stiffness(model_->voxels.size());
-  // First voxel of plane k. There are no voxels above the last plane of nodes.
-  const auto first_voxel = [&](std::int32_t k)
-  {
-    const auto tile = rows_.plane_tiles[std::clamp(k, 0, rows_.planes - 1)];
-    return static_cast<std::size_t>(tile) < rows_.tiles.size() ? rows_.tiles[tile].first_voxel[0]
-                                                               : static_cast<std::int32_t>(stiffness.size());
-  };
+  const auto first_voxel = [&](std::int32_t k) { return rows_.plane_voxels[std::clamp(k, 0, rows_.planes)]; };
   team_.run(
       [&](int t)
       {

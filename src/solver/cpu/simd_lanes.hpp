@@ -69,25 +69,32 @@ struct SimdLanes
     first[count] += last[count - 1];
   }
 
-  /// Like add(), for one of the two strips of a batch.
-  template <int strip>
-  static FRONTALIS_LAW void add_strip([[maybe_unused]] Real* first, [[maybe_unused]] const Batch& low,
-                                      [[maybe_unused]] const Batch& high)
+  /// Like add(), for a batch of two strips.
+  static FRONTALIS_LAW void add(Real* first, [[maybe_unused]] Real* second, const Batch& low, const Batch& high)
   {
 #if defined(__AVX512F__)
     if constexpr (two_strips)
     {
-      const __m256 upper = _mm512_extractf32x8_ps(high, strip);
-      const __m256 sum = _mm256_add_ps(_mm512_extractf32x8_ps(low, strip), moved_up(upper));
-      alignas(32) Real last[Strip];
-      _mm256_store_ps(last, upper);
-      _mm256_storeu_ps(first, _mm256_add_ps(_mm256_loadu_ps(first), sum));
-      first[Strip] += last[Strip - 1];
+      // The last number of each strip comes to its front, where the first mask leaves it out of the sum.
+      const __m512 turned =
+          _mm512_permutexvar_ps(_mm512_set_epi32(14, 13, 12, 11, 10, 9, 8, 15, 6, 5, 4, 3, 2, 1, 0, 7), high);
+      const __m512 sum = _mm512_mask_add_ps(low, 0xfefe, low, turned);
+      add(first, _mm512_castps512_ps256(sum), _mm512_castps512_ps256(turned));
+      add(second, _mm512_extractf32x8_ps(sum, 1), _mm512_extractf32x8_ps(turned, 1));
+      return;
     }
 #endif
+    add(first, low, high);
   }
 
 private:
+#if defined(__AVX512F__)
+  static FRONTALIS_LAW void add(Real* first, __m256 sum, __m256 turned)
+  {
+    _mm256_storeu_ps(first, _mm256_add_ps(_mm256_loadu_ps(first), sum));
+    first[Strip] += _mm256_cvtss_f32(turned);
+  }
+#endif
 #if defined(__AVX2__)
   static FRONTALIS_LAW __m256 moved_up(__m256 x)
   {

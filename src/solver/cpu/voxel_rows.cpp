@@ -1,5 +1,7 @@
 #include "solver/cpu/voxel_rows.hpp"
 
+#include "solver/cpu/gather_tiles.hpp"
+
 #include <algorithm>
 
 namespace frontalis
@@ -138,32 +140,6 @@ TileStabilisation stabilisation_of(const TileVoxels& voxels)
   return s;
 }
 
-// Forms a tile from the voxels that begin at index e, and advances e past them.
-Tile next_tile(const Model& model, std::int32_t& e)
-{
-  const auto count = static_cast<std::int32_t>(model.voxels.size());
-  const std::int32_t plane = model.voxels[e][2];
-  Tile tile{};
-  for (int strip = 0; strip < Tile::strips; ++strip)
-  {
-    // An empty strip has the node indices of the previous strip. It adds zeros to the forces there, because its lanes
-    // have no stiffness.
-    const bool any = e < count && model.voxels[e][2] == plane;
-    const auto first = any ? e : tile.first_voxel[strip - 1];
-    tile.first_voxel[strip] = first;
-    for (int row = 0; row < 4; ++row)
-      tile.node[strip][row] = model.voxel_nodes[first][2 * row];
-    while (any && e < count && tile.count[strip] < Tile::strip && model.voxels[e][2] == plane &&
-           model.voxels[e][1] == model.voxels[first][1] &&
-           model.voxels[e][0] == model.voxels[first][0] + tile.count[strip])
-    {
-      ++tile.count[strip];
-      ++e;
-    }
-  }
-  return tile;
-}
-
 }  // namespace
 
 VoxelRows::VoxelRows(const Model& model, const Discretisation& discretisation)
@@ -176,26 +152,35 @@ VoxelRows::VoxelRows(const Model& model, const Discretisation& discretisation)
   for (std::int32_t k = 0; k < planes; ++k)
     plane_nodes[k + 1] += plane_nodes[k];
 
-  TileVoxels voxels;
-  for (std::int32_t e = 0; e < static_cast<std::int32_t>(model.voxels.size());)
+  plane_voxels.assign(planes + 1, 0);
+  for (const auto& voxel : model.voxels)
+    ++plane_voxels[voxel[2] + 1];
+  for (std::int32_t k = 0; k < planes; ++k)
+    plane_voxels[k + 1] += plane_voxels[k];
+
+  for (std::int32_t k = 0; k < planes; ++k)
   {
-    const std::int32_t plane = model.voxels[e][2];
-    Tile tile = next_tile(model, e);
-    for (int lane = 0; lane < Tile::width; ++lane)
+    const std::int32_t first = plane_voxels[k], last = plane_voxels[k + 1];
+    std::vector<VoxelProperties> properties(last - first);
+    for (auto e = first; e < last; ++e)
+      discretisation.voxel(e, properties[e - first]);
+    for (Tile& tile : gather_tiles(model, first, last, properties.data()))
     {
-      voxels[lane] = {};
-      if (tile.voxel(lane) >= 0)
-        discretisation.voxel(tile.voxel(lane), voxels[lane]);
+      TileVoxels voxels;
+      for (int lane = 0; lane < Tile::width; ++lane)
+        if (tile.voxel(lane) >= 0)
+          voxels[lane] = properties[tile.voxel(lane) - first];
+      add_fibres(model, voxels, tile, fibres, fibre_muscle);
+      add_laws(voxels, tile, laws);
+      add_viscosity(voxels, tile, viscous);
+      add_cut(discretisation, voxels, tile, cut);
+      tile.simple = tile.law_begin == tile.law_end && tile.viscous < 0 && tile.cut < 0;
+      stiffness.push_back(stiffness_of(voxels));
+      if (discretisation.assumed_strain)
+        stabilisation.push_back(stabilisation_of(voxels));
+      tiles.push_back(tile);
+      ++plane_tiles[k + 1];
     }
-    add_fibres(model, voxels, tile, fibres, fibre_muscle);
-    add_laws(voxels, tile, laws);
-    add_viscosity(voxels, tile, viscous);
-    add_cut(discretisation, voxels, tile, cut);
-    stiffness.push_back(stiffness_of(voxels));
-    if (discretisation.assumed_strain)
-      stabilisation.push_back(stabilisation_of(voxels));
-    tiles.push_back(tile);
-    ++plane_tiles[plane + 1];
   }
   for (std::int32_t k = 0; k < planes; ++k)
     plane_tiles[k + 1] += plane_tiles[k];
@@ -226,6 +211,7 @@ void VoxelRows::list_arrays(Effect of_fibres, ArrayList& list) const
   list.add("tiles", tiles);
   list.add("planes", plane_tiles);
   list.add("planes", plane_nodes);
+  list.add("planes", plane_voxels);
   list.add("stiffness", stiffness);
   list.add("hourglass stiffness", stabilisation);
   list.add("laws", laws);

@@ -24,6 +24,7 @@ struct Tile
   std::int32_t law_end;
   std::int32_t viscous;  ///< index of the ViscousSlot; -1: none
   std::int32_t cut;      ///< index of the CutSlot; -1: all voxels are whole
+  bool simple;           ///< whether no voxel has laws, viscosity or a CutSlot
 
   /// Index of the voxel in a lane, or -1.
   std::int32_t voxel(int lane) const
@@ -92,9 +93,10 @@ struct VoxelRows
 
   std::int32_t planes = 0;  ///< number of node planes
   std::vector<Tile> tiles;
-  std::vector<std::int32_t> plane_tiles;  ///< the tiles of voxel plane k are plane_tiles[k] .. plane_tiles[k + 1]
-  std::vector<std::int32_t> plane_nodes;  ///< the nodes of node plane k are plane_nodes[k] .. plane_nodes[k + 1]
-  std::vector<TileStiffness> stiffness;   ///< one per tile
+  std::vector<std::int32_t> plane_tiles;   ///< the tiles of voxel plane k are plane_tiles[k] .. plane_tiles[k + 1]
+  std::vector<std::int32_t> plane_nodes;   ///< the nodes of node plane k are plane_nodes[k] .. plane_nodes[k + 1]
+  std::vector<std::int32_t> plane_voxels;  ///< the voxels of voxel plane k are plane_voxels[k] .. plane_voxels[k + 1]
+  std::vector<TileStiffness> stiffness;    ///< one per tile
   std::vector<TileStabilisation> stabilisation;  ///< one per tile; empty without assumed-strain hourglass control
   std::vector<FibreSlot> fibres;
   std::vector<std::int32_t> fibre_muscle;  ///< muscle of each FibreSlot
