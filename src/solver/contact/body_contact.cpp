@@ -138,7 +138,7 @@ std::vector<BodyState> BodyContact<Real>::next(const ConstraintStep& step) const
     begin_step(now[b], bodies_[b].dt, step.dt);
     way = std::max(way, longest_way(bodies_[b].pose, now[b].pose, far_corner(model_)));
   }
-  way += bodies_.front().way + nodes_.spread() * *std::max_element(node_way_.begin(), node_way_.end());
+  way += bodies_.front().way + *std::max_element(node_way_.begin(), node_way_.end());
   for (BodyState& body : now)
     body.way = bodies_.front().dt > 0 ? way : 0;
   return now;
