@@ -49,7 +49,7 @@ BodyContact<Real>::BodyContact(const Model& model, const Discretisation& discret
     spread_.push_back(spread_at(point.coordinates));
   }
   std::partial_sum(plane_points_.begin(), plane_points_.end(), plane_points_.begin());
-  nodes_ = BoundNodeWay(model, bound);
+  nodes_ = BoundNodeWay(model, bound, BoundNodeWay::Of::nodes);
   blocks_.make(model, points_);
   reset();
 }

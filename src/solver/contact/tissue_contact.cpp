@@ -36,7 +36,7 @@ TissueContact<Real>::TissueContact(const Model& model, const Discretisation& dis
       kernels_(kernels),
       surface_(model),
       reach_(touch_search::reach * surface_.edge),
-      nodes_(model, surface_.binding())
+      nodes_(model, surface_.binding(), BoundNodeWay::Of::points)
 {
   if (surface_.vertices.empty())
     return;
@@ -51,12 +51,14 @@ TissueContact<Real>::TissueContact(const Model& model, const Discretisation& dis
   for (const auto& vertex : surface_.vertices)
   {
     ++plane_points_[model.voxels[vertex.voxel][2] + 1];
+    rest_.push_back(vertex.rest);
     const double whole = stiffness.of_self(vertex.contact, vertex.source_in_contact);
     per_area_.push_back(static_cast<float>(whole / std::max(areas[vertex.contact][vertex.source_in_contact], 1e-30)));
     stiffness_.push_back(static_cast<float>(0.5 * whole * double(vertex.area_share)));
   }
   std::partial_sum(plane_points_.begin(), plane_points_.end(), plane_points_.begin());
   make_vertex_blocks();
+  make_tree();
   overlap_.assign(surface_.vertices.size(), 0);
   reset();
   find_overlap_at_rest();
@@ -136,7 +138,7 @@ void TissueContact<Real>::reset()
   node_way_.assign(planes + 1, 0);
   lost_.assign(planes, 0);
   opened_.assign(1, 0);
-  grid_.resize(surface_.triangles.size());
+  tree_.reset();
 }
 
 template <class Real>
@@ -145,6 +147,7 @@ void TissueContact<Real>::list_arrays(ArrayList& list)
   const Effect effect = Effect::self_contact;
   surface_.list_arrays(list, effect);
   nodes_.list_arrays(list, effect);
+  list.add(effect, "vertices", rest_);
   list.add(effect, "vertices", stiffness_);
   list.add(effect, "vertices", per_area_);
   list.add(effect, "vertices", overlap_);
@@ -168,13 +171,13 @@ void TissueContact<Real>::list_arrays(ArrayList& list)
   list.add_state(effect, "distances", node_way_);
   list.add_state(effect, "sums", lost_);
   list.add_state(effect, "sums", opened_);
-  grid_.list_arrays(list, effect);
+  tree_.list_arrays(list, effect);
 }
 
 template <class Real>
 double TissueContact<Real>::way_now() const
 {
-  return clock_[0].way + 2 * nodes_.spread() * *std::max_element(node_way_.begin(), node_way_.end());
+  return clock_[0].way + 2 * *std::max_element(node_way_.begin(), node_way_.end());
 }
 
 template <class Real>
@@ -192,9 +195,15 @@ void TissueContact<Real>::prepare_step(const NodeShare& share, const Real* const
     return;
   const Moved moved = moved_in(moved_);
   const auto [begin, end] = part_of(vertex_blocks_.size(), share);
-  for (auto b = begin; b < end; ++b)
-    if (stage != Stage::hold || live_[b] != 0)
-      kernels_.place(vertex_blocks_.data(), moved, { u[0], u[1], u[2] }, b, b + 1);
+  const auto wanted = [&](std::int32_t b) { return stage != Stage::hold || live_[b] != 0; };
+  for (auto b = begin; b < end;)
+  {
+    auto last = b;
+    while (last < end && wanted(last))
+      ++last;
+    kernels_.place(vertex_blocks_.data(), moved, { u[0], u[1], u[2] }, b, last);
+    b = last + 1;
+  }
 }
 
 template <class Real>

@@ -3,7 +3,7 @@
 #include "frontalis/physics/surface_foot.hpp"
 #include "solver/contact/bound_node_way.hpp"
 #include "solver/contact/touching_surface.hpp"
-#include "solver/contact/triangle_grid.hpp"
+#include "solver/contact/triangle_tree.hpp"
 #include "solver/cpu/touch_kernel.hpp"
 #include "solver/stepping/node_part.hpp"
 
@@ -19,12 +19,12 @@ namespace frontalis
 /// side are pushed out of the other side.
 ///
 /// A vertex forms pairs with at most `most_pairs` triangles that face it, and follows the surface from one triangle to
-/// the next. A grid finds the pairs within three steps: the first sorts all triangles into cells, the second searches
-/// near each vertex, the third puts the pairs into blocks. The search is repeated when a vertex could touch a triangle
-/// outside of its reach: the motion of nodes bounds that of vertices, and where the bound is reached, the first step
-/// measures how far vertices have approached each other and goes on without a search if that is much less. A block
-/// whose pairs have gaps of at least `d` is skipped until vertices have moved by `d`, and the positions of vertices far
-/// from all pairs are not computed.
+/// the next. A tree of balls finds the pairs within three steps: the first places the triangles in it, the second
+/// searches near each vertex, the third puts the pairs into blocks. The search is repeated when a vertex could touch a
+/// triangle outside of its reach: the motion of nodes bounds that of vertices, and where the bound is reached, the
+/// first step measures how far vertices have approached each other and goes on without a search if that is much less. A
+/// block whose pairs have gaps of at least `d` is skipped until vertices have moved by `d`, and the positions of
+/// vertices far from all pairs are not computed.
 ///
 /// In prepare_step() the threads compute the positions of the vertices. In before_step() each thread finds the forces
 /// of its part of the pairs, and in add_forces() it adds the forces on the nodes of its planes in the order of the
@@ -53,6 +53,7 @@ public:
   const std::vector<float>& stiffness() const { return stiffness_; }  ///< [N/m]
   const std::vector<float>& per_area() const { return per_area_; }    ///< the same per area of the vertex [N/m3]
   const std::vector<float>& overlap() const { return overlap_; }      ///< gap at rest, not positive [m]
+  std::int64_t searches() const { return clock_[0].searches; }        ///< number of searches since reset()
 
 private:
   using Vector = physics::Vec3<double>;
@@ -63,9 +64,9 @@ private:
 
   enum class Stage : std::int32_t
   {
-    check,    // if vertices have approached each other so far that a search is due, go on as in `sort`
-    sort,     // sort triangles
-    search,   // search among the triangles, in the step after they were sorted
+    check,    // if vertices have approached each other so far that a search is due, go on as in `place`
+    place,    // place triangles in the tree
+    search,   // search the tree, in the next step
     collect,  // collect the pairs that were found at the start of the step after `search`
     hold
   };
@@ -75,8 +76,9 @@ private:
     double earliest = 0;  // smallest due_ of all blocks
     double renewal = 0;   // value of `way` at which the search is repeated
     double dt = 0;        // length of the latest step [s]; 0: no step has been made
-    Stage stage = Stage::sort;
-    std::int32_t blocks = 0;  // number of blocks of pairs
+    Stage stage = Stage::place;
+    std::int32_t blocks = 0;    // number of blocks of pairs
+    std::int64_t searches = 0;  // number of searches since the start
   };
   struct Found
   {
@@ -109,14 +111,15 @@ private:
     return { pair_vertices_, pairs_, forces_, due_, touches_, moved_in(moved_), this, blocks };
   }
   double way_now() const;
-  double approached();
+  double approached(double enough);
   void choose_stage(Stage stage, double way);
   bool rests() const { return clock_[0].stage == Stage::hold && way_now() < clock_[0].earliest; }
   Vector place(std::size_t v, const Moved& moved) const;
   Vector normal(std::size_t v, const Moved& moved) const;
   void make_vertex_blocks();
   void touch(Arena& arena, double way, double dt, std::int32_t first, std::int32_t last) const;
-  void sort_triangles();
+  void make_tree();
+  void place_triangles();
   Found search(std::size_t p);
   static void go_on(void* arena, std::int32_t block, int lane);
   void set_lane(PairVertices& vertices, PairBlock<Real>& block, int lane, const Pair& pair) const;
@@ -133,7 +136,8 @@ private:
   TouchKernels<Real> kernels_;
   TouchingSurface surface_;
   bool runs_ = true, rubs_ = false;
-  double reach_;  // distance from a triangle within which a vertex forms a pair with it [m]
+  double reach_;              // distance from a triangle within which a vertex forms a pair with it [m]
+  std::vector<Vector> rest_;  // positions of the vertices at rest, which TouchingSurface keeps farther apart
   std::vector<float> stiffness_, per_area_;
   std::vector<float> overlap_;  // gap at rest, not positive, from which the depth of contact is measured [m]
   std::vector<VertexBlock<Real>> vertex_blocks_;
@@ -158,10 +162,10 @@ private:
   std::vector<Found> found_;
   std::vector<Real> searched_;    // displacements of vertices at the latest search, three numbers each [m]
   std::vector<Clock> clock_;      // the vector has one entry
-  std::vector<double> node_way_;  // longest displacement of a bound node in the latest step, one per plane of nodes [m]
+  std::vector<double> node_way_;  // BoundNodeWay::in_plane() of the latest step, one per plane of nodes [m]
   std::vector<double> lost_;      // energy lost to friction, one per plane of voxels [J]
   std::vector<double> opened_;    // sum of lost_ when the account was opened; the vector has one entry
-  TriangleGrid grid_;
+  TriangleTree<Real> tree_;
 };
 
 }  // namespace frontalis

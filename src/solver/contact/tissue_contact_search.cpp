@@ -16,8 +16,12 @@ using Vector = physics::Vec3<double>;
 // Around the triangle of a pair, the corners of this many rings of triangles also get positions in each step.
 constexpr int rings = 3;
 
+// Blocks of the tree are chosen as if triangles whose normals differ by a length of 1 were this far apart, in voxel
+// edges, so that no block has triangles of both lips of a mouth.
+constexpr double block_span = 2;
+
 // The search is repeated when less than this share is left of the way by which vertices may approach triangles.
-constexpr double least_left = 0.25;
+constexpr double least_left = 0.2;
 
 template <class Real>
 Vector record(const Real* records, std::size_t v)
@@ -31,7 +35,7 @@ Vector record(const Real* records, std::size_t v)
 template <class Real>
 physics::Vec3<double> TissueContact<Real>::place(std::size_t v, const Moved& moved) const
 {
-  return surface_.vertices[v].rest + record(moved.record, v);
+  return rest_[v] + record(moved.record, v);
 }
 
 template <class Real>
@@ -48,10 +52,7 @@ struct TissueContact<Real>::View
   static constexpr double edge_error = 1e-9;
 
   Vector apart(std::int32_t v, std::int32_t w) const { return contact.place(v, moved) - contact.place(w, moved); }
-  Vector rest_apart(std::int32_t v, std::int32_t w) const
-  {
-    return contact.surface_.vertices[v].rest - contact.surface_.vertices[w].rest;
-  }
+  Vector rest_apart(std::int32_t v, std::int32_t w) const { return contact.rest_[v] - contact.rest_[w]; }
   Vector normal(std::int32_t v) const { return contact.normal(v, moved); }
   double overlap(std::int32_t v) const { return double(contact.overlap_[v]); }
   std::int32_t contact_of(std::int32_t v) const { return contact.surface_.vertices[v].contact; }
@@ -109,14 +110,14 @@ void TissueContact<Real>::set_lane(PairVertices& vertices, PairBlock<Real>& bloc
   const auto p = pair.vertex;
   vertices.vertex[0][lane] = p;
   vertices.triangle[lane] = pair.triangle;
-  const Vector origin = surface_.vertices[triangle.vertex[0]].rest;
+  const Vector origin = rest_[triangle.vertex[0]];
   for (std::size_t i = 0; i < 3; ++i)
   {
     const auto v = triangle.vertex[i];
     vertices.vertex[i + 1][lane] = v;
     block.softer[i][lane] = static_cast<Real>(per_area_[v] / per_area_[p]);
     block.inner[i][lane] = triangle.neighbour[i] < 0 ? 0 : 1;
-    const Vector way = surface_.vertices[i == 0 ? p : v].rest - origin;
+    const Vector way = rest_[i == 0 ? p : v] - origin;
     block.rest[i][0][lane] = static_cast<Real>(way.x);
     block.rest[i][1][lane] = static_cast<Real>(way.y);
     block.rest[i][2][lane] = static_cast<Real>(way.z);
@@ -131,59 +132,93 @@ void TissueContact<Real>::set_lane(PairVertices& vertices, PairBlock<Real>& bloc
 }
 
 template <class Real>
-void TissueContact<Real>::sort_triangles()
+void TissueContact<Real>::make_tree()
 {
-  const Moved moved = moved_in(moved_);
-  std::vector<TriangleGrid::Triangle> triangles;
-  triangles.reserve(surface_.triangles.size());
+  std::vector<typename TriangleTree<Real>::Triangle> at_rest(surface_.triangles.size());
+  std::vector<typename TriangleTree<Real>::Corners> corners;
   for (const auto& triangle : surface_.triangles)
   {
-    const Vector a = place(triangle.vertex[0], moved), b = place(triangle.vertex[1], moved),
-                 c = place(triangle.vertex[2], moved);
-    const Vector centre = (1.0 / 3) * (a + b + c);
-    const double radius = std::max({ norm(a - centre), norm(b - centre), norm(c - centre) });
-    triangles.push_back({ centre, touch_search::margin * radius });
+    physics::SurfaceTriangle<double>& at = at_rest[corners.size()].at;
+    for (std::size_t i = 0; i < 3; ++i)
+    {
+      at.corner[i] = rest_[triangle.vertex[i]];
+      at.normal[i] = surface_.vertices[triangle.vertex[i]].normal;
+    }
+    corners.push_back(triangle.vertex);
   }
-  grid_.build(touch_search::margin * reach_, triangles);
+  tree_.make(at_rest, corners, block_span * surface_.edge);
 }
 
-// Returns an upper bound of the distance by which a vertex and a triangle have approached each other since the latest
-// search [m]: the diagonal of the box that contains the ways of all vertices, so that a motion which they have in
-// common does not count.
 template <class Real>
-double TissueContact<Real>::approached()
+void TissueContact<Real>::place_triangles()
 {
   const Moved moved = moved_in(moved_);
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  Vector least{ infinity, infinity, infinity }, most = -1.0 * least;
-  for (std::size_t v = 0; v < surface_.vertices.size(); ++v)
-  {
-    const Real* const then = searched_.data() + 3 * v;
-    const Vector way = record(moved.record, v) - Vector{ double(then[0]), double(then[1]), double(then[2]) };
-    least = { std::min(least.x, way.x), std::min(least.y, way.y), std::min(least.z, way.z) };
-    most = { std::max(most.x, way.x), std::max(most.y, way.y), std::max(most.z, way.z) };
-  }
-  return norm(most - least);
+  tree_.place(touch_search::margin * reach_,
+              [&](std::int32_t t)
+              {
+                const auto& [corner, neighbour] = surface_.triangles[t];
+                typename TriangleTree<Real>::Triangle triangle;
+                for (std::size_t i = 0; i < 3; ++i)
+                {
+                  triangle.at.corner[i] = place(corner[i], moved);
+                  triangle.at.normal[i] = normal(corner[i], moved);
+                }
+                triangle.rim = *std::min_element(neighbour.begin(), neighbour.end()) < 0;
+                return triangle;
+              });
 }
 
-// Sets the stage of the next step, and sorts triangles if it is a search. `way`: Clock::way at this step.
+// Returns an upper bound of the distance by which a vertex and a triangle that formed no pair at the latest search have
+// come closer than the reach [m], or a number above `enough` if they may have done so by more. First tries the diagonal
+// of the box that contains the ways of all vertices, so that a motion which they have in common does not count.
+template <class Real>
+double TissueContact<Real>::approached(double enough)
+{
+  const Moved moved = moved_in(moved_);
+  const auto way_of = [&](std::size_t v)
+  {
+    const Real *const now = moved.record + v * Moved::stride, *const then = searched_.data() + 3 * v;
+    return std::array<Real, 3>{ { now[0] - then[0], now[1] - then[1], now[2] - then[2] } };
+  };
+  const auto place_of = [&](std::size_t v)
+  {
+    const Vector at = place(v, moved);
+    return std::array<Real, 3>{ { static_cast<Real>(at.x), static_cast<Real>(at.y), static_cast<Real>(at.z) } };
+  };
+  std::array<Real, 3> least = way_of(0), most = least;
+  for (std::size_t v = 1; v < surface_.vertices.size(); ++v)
+  {
+    const std::array<Real, 3> way = way_of(v);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+      least[axis] = std::min(least[axis], way[axis]);
+      most[axis] = std::max(most[axis], way[axis]);
+    }
+  }
+  const Vector box{ double(most[0] - least[0]), double(most[1] - least[1]), double(most[2] - least[2]) };
+  const double diagonal = norm(box);
+  return diagonal < enough ? diagonal : std::min(diagonal, tree_.approach(kernels_, reach_, enough, place_of, way_of));
+}
+
+// Sets the stage of the next step, and places triangles if it is a search. `way`: Clock::way at this step.
 template <class Real>
 void TissueContact<Real>::choose_stage(Stage stage, double way)
 {
   const double farthest = touch_search::renewal_share * reach_;
   if (stage == Stage::hold && way >= next_.renewal)
     next_.stage = Stage::check;
-  if (stage == Stage::check || stage == Stage::sort)
+  if (stage == Stage::check || stage == Stage::place)
   {
-    const double left = stage == Stage::check ? farthest - approached() : 0;
+    const double left = stage == Stage::check ? farthest - approached((1 - least_left) * farthest) : 0;
     next_.stage = left > least_left * farthest ? Stage::hold : Stage::search;
     next_.renewal = way + left;
     if (next_.stage == Stage::search)
-      sort_triangles();
+      place_triangles();
   }
   if (stage == Stage::search)
   {
     next_.stage = Stage::collect;
+    ++next_.searches;
     next_.renewal = way + farthest;
     const Moved moved = moved_in(moved_);
     for (std::size_t v = 0; v < surface_.vertices.size(); ++v)
@@ -200,11 +235,11 @@ typename TissueContact<Real>::Found TissueContact<Real>::search(std::size_t p)
   const View view{ *this, moved_in(moved_) };
   Found found;
   found.away.fill(2 * reach_);
-  grid_.near(place(p, view.moved),
+  tree_.near(kernels_, place(p, view.moved), normal(p, view.moved),
              [&](std::int32_t t)
              {
                double gap;
-               if (!touch_search::may_touch(view, static_cast<std::int32_t>(p), t, reach_, grid_.edge(), gap))
+               if (!touch_search::may_touch(view, static_cast<std::int32_t>(p), t, reach_, tree_.largest(), gap))
                  return;
                // If t is nearer, it replaces the triangle found so far that shares a corner with t or, if none does,
                // the farthest triangle found so far.
@@ -238,9 +273,10 @@ void TissueContact<Real>::collect_pairs()
   std::int32_t blocks = 0;
   std::size_t lanes = touch_width;  // number of lanes used in the last block
   auto next = held.begin();
+  std::vector<Pair> of_vertex;
   for (std::int32_t p = 0; p < static_cast<std::int32_t>(found_.size()); ++p)
   {
-    std::vector<Pair> of_vertex;
+    of_vertex.clear();
     while (next != held.end() && next->vertex == p)
       of_vertex.push_back(*next++);
     const Found& found = found_[p];
@@ -301,7 +337,7 @@ void TissueContact<Real>::find_overlap_at_rest()
   const Moved moved = moved_in(moved_);
   kernels_.place(vertex_blocks_.data(), moved, { still.data(), still.data(), still.data() }, 0,
                  static_cast<std::int32_t>(vertex_blocks_.size()));
-  sort_triangles();
+  place_triangles();
   std::vector<float> overlap(overlap_.size(), 0);
   physics::SurfaceTriangle<double> unused;
   for (std::size_t p = 0; p < overlap.size(); ++p)
@@ -318,7 +354,8 @@ void TissueContact<Real>::find_overlap_at_rest()
 #define FRONTALIS_TISSUE_CONTACT_SEARCH(Real)                                            \
   template void TissueContact<Real>::go_on(void*, std::int32_t, int);                    \
   template void TissueContact<Real>::choose_stage(Stage, double);                        \
-  template void TissueContact<Real>::sort_triangles();                                   \
+  template void TissueContact<Real>::make_tree();                                        \
+  template void TissueContact<Real>::place_triangles();                                  \
   template typename TissueContact<Real>::Found TissueContact<Real>::search(std::size_t); \
   template void TissueContact<Real>::collect_pairs();                                    \
   template void TissueContact<Real>::find_overlap_at_rest();

@@ -38,7 +38,7 @@ constexpr double overlap_at_rest = 0.25, thickest_sheet = 3;
 /// The other side of a sheet lies within an angle with this cosine from a triangle's inward normal.
 constexpr double across_sheet = 0.5;
 /// Fraction of the reach by which a vertex and a triangle may approach each other before a CPU repeats the search. It
-/// does so as soon as they could have approached each other by three quarters of this (TissueContact).
+/// does so as soon as they could have approached each other by most of this (TissueContact).
 constexpr double renewal_share = 0.8;
 /// Factor on the reach that allows for motion between the sorting of triangles and the search.
 constexpr double margin = 1.1;
@@ -74,7 +74,7 @@ template <class View, class T>
 FRONTALIS_LAW physics::SurfaceFoot<T> follow(View&& view, std::int32_t p, std::int32_t& t,
                                              physics::SurfaceTriangle<T>& triangle)
 {
-  for (int hop = 0;; ++hop)
+  for (std::int32_t hop = 0, from = -1;; ++hop)
   {
     triangle = view.triangle(t);
     const physics::SurfaceFoot<T> foot = physics::surface_foot(triangle, view.apart(p, view.corners(t)[0]));
@@ -88,8 +88,11 @@ FRONTALIS_LAW physics::SurfaceFoot<T> follow(View&& view, std::int32_t p, std::i
         least = foot.weight[i];
         to = neighbour[i];
       }
-    if (to < 0)
+    // A foot may be beyond the common edge of two triangles on both sides. The vertex would hop to and fro; it takes
+    // the triangle where that would end.
+    if (to < 0 || (to == from && (most_hops - hop) % 2 == 0))
       return foot;
+    from = t;
     t = to;
   }
 }

@@ -149,11 +149,17 @@ void TouchingSurface::add(std::int32_t contact, std::int32_t first_source)
 // Finds the shortest paths along edges from each vertex, up to the length `within` [m].
 void TouchingSurface::join(const TriangleMesh& mesh, std::int32_t first_source, double within)
 {
-  std::vector<std::vector<std::int32_t>> around(mesh.vertices.size());
+  // The neighbours of each vertex along edges, and the lengths of these edges.
+  std::vector<std::vector<std::pair<std::int32_t, double>>> around(mesh.vertices.size());
   for (const auto& t : mesh.triangles)
     for (std::size_t i = 0; i < 3; ++i)
       for (const std::size_t other : { (i + 1) % 3, (i + 2) % 3 })
-        around[t[i]].push_back(t[other]);
+        around[t[i]].push_back({ t[other], norm(vector_of(mesh.vertices[t[other]]) - vector_of(mesh.vertices[t[i]])) });
+  for (auto& edges : around)
+  {
+    std::sort(edges.begin(), edges.end());
+    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  }
   std::vector<double> way(mesh.vertices.size(), within);
   using Reached = std::pair<double, std::int32_t>;
   for (std::size_t v = 0; v < around.size(); ++v)
@@ -169,9 +175,9 @@ void TouchingSurface::join(const TriangleMesh& mesh, std::int32_t first_source, 
       if (at > way[from])
         continue;
       reached.push_back(from);
-      for (const auto to : around[from])
+      for (const auto& [to, length] : around[from])
       {
-        const double next = at + norm(vector_of(mesh.vertices[to]) - vector_of(mesh.vertices[from]));
+        const double next = at + length;
         if (next < way[to])
         {
           way[to] = next;

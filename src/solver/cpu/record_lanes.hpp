@@ -24,6 +24,14 @@ struct RecordLanes
   /// Returns one bit per lane: whether the lane's number is positive.
   static FRONTALIS_LAW std::uint32_t positive(const Batch& x)
   {
+#if defined(__AVX512F__)
+    if constexpr (count == 16)
+      return _mm512_cmp_ps_mask(x, _mm512_setzero_ps(), _CMP_GT_OQ);
+#endif
+#if defined(__AVX__)
+    if constexpr (count == 8)
+      return static_cast<std::uint32_t>(_mm256_movemask_ps(_mm256_cmp_ps(x, _mm256_setzero_ps(), _CMP_GT_OQ)));
+#endif
     alignas(64) float lane[count];
     store(x, lane);
     std::uint32_t bits = 0;

@@ -89,6 +89,37 @@ struct PairArguments
   void* context;
 };
 
+/// Balls around triangles, or around blocks of balls, one per lane (contact/triangle_tree.hpp).
+template <class Real>
+struct BallBlock
+{
+  Real centre[3][touch_width];
+  Real farthest[touch_width];  ///< square of the distance from the centre within which a vertex is near [m2]
+  Real away[3][touch_width];   ///< a vertex is not near if the component of its normal along this vector is above 1
+};
+/// The triangles inside such balls.
+template <class Real>
+struct FacetBlock
+{
+  Real normal[3][touch_width];
+  Real slope[2][3][touch_width];  ///< gradients of the barycentric coordinates of corners 1 and 2 [1/m]
+  /// A vertex is near if each barycentric coordinate of its projection onto the facet is at least -beyond - lean *
+  /// height above the facet, and the height is below `highest` [m].
+  Real lean[3][touch_width], beyond[touch_width], highest[touch_width];
+};
+
+/// Boxes around the positions and displacements of groups of vertices, one group per lane. Empty lanes have boxes whose
+/// lower corner is far above the upper one.
+template <class Real>
+struct GroupBoxes
+{
+  struct Boxes
+  {
+    Real least[3][touch_width], most[3][touch_width];  // [m]
+  };
+  Boxes place, way;
+};
+
 template <class Real>
 struct TouchKernels
 {
@@ -101,6 +132,14 @@ struct TouchKernels
   /// record per bound node. `sums`: force on each vertex and on its normal; they are set to 0 afterwards.
   void (*spread)(const VertexBlock<Real>* blocks, const MovedVertices<Real>& vertices, Real* sums, Real* node_forces,
                  std::int32_t block, std::int32_t first_plane, std::int32_t end_plane);
+  /// Returns the bits of the balls that a vertex is near to. `facets`: the triangles inside the balls, or null.
+  std::uint32_t (*near)(const BallBlock<Real>& balls, const FacetBlock<Real>* facets, const Real* point,
+                        const Real* normal);
+  /// Compares the group of vertices in lane `at` of one block with those in the lanes of another one: finds upper
+  /// bounds of how far they have approached each other, counting only the way within `reach`. Returns the bits of the
+  /// lanes in which it is above `enough`, and raises the lanes of `largest` to the others [m].
+  std::uint32_t (*approach)(const GroupBoxes<Real>& one, int at, const GroupBoxes<Real>& others, Real reach,
+                            Real enough, Real (&largest)[touch_width]);
   std::array<std::int32_t, touch_width> record;
 };
 

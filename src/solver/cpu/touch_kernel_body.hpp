@@ -5,6 +5,8 @@
 #include "solver/cpu/prefetch.hpp"
 #include "solver/cpu/touch_kernel.hpp"
 
+#include <algorithm>
+
 namespace frontalis
 {
 
@@ -69,8 +71,12 @@ struct TouchKernelBody
                     std::int32_t first, std::int32_t last)
   {
     for (auto block = first; block < last; ++block)
+    {
+      // Meanwhile voxels have displaced the blocks from the cache of a core.
+      prefetch(blocks + block + 1);
       for (int lane = 0; lane < touch_width; lane += Lanes::count)
         place(blocks[block], vertices, u, lane, std::ptrdiff_t{ block } * touch_width + lane);
+    }
   }
 
   static FRONTALIS_LAW void place(const VertexBlock<Real>& b, const Moved& vertices,
@@ -284,9 +290,71 @@ struct TouchKernelBody
     }
   }
 
+  static std::uint32_t near(const BallBlock<Real>& balls, const FacetBlock<Real>* facets, const Real* point,
+                            const Real* normal)
+  {
+    const Vector p{ Batch(point[0]), Batch(point[1]), Batch(point[2]) };
+    const Vector n{ Batch(normal[0]), Batch(normal[1]), Batch(normal[2]) };
+    const Batch none = Number::of(0), whole = Number::of(1);
+    std::uint32_t bits = 0;
+    for (int lane = 0; lane < touch_width; lane += Lanes::count)
+    {
+      const Vector way = p - load(balls.centre, lane);
+      std::uint32_t near = Lanes::positive(Lanes::load(balls.farthest + lane) - dot(way, way)) &
+                           Lanes::positive(whole - dot(load(balls.away, lane), n));
+      if (near != 0 && facets != nullptr)
+      {
+        const Batch above = dot(way, load(facets->normal, lane)), height = Number::max(above, none - above);
+        const Batch one = dot(way, load(facets->slope[0], lane)), two = dot(way, load(facets->slope[1], lane));
+        const auto lean = [&](int i) { return Lanes::load(facets->lean[i] + lane) * height; };
+        const Batch least = Number::min(lean(0) - one - two, Number::min(lean(1) + one, lean(2) + two));
+        near &= Lanes::positive(least + Number::of(1.0 / 3) + Lanes::load(facets->beyond + lane)) &
+                Lanes::positive(Lanes::load(facets->highest + lane) - above);
+      }
+      bits |= near << lane;
+    }
+    return bits;
+  }
+
+  // Squared length of the vector of lower bounds of the distance between a box and those of a block or, with
+  // `farthest`, of upper bounds.
+  template <bool farthest>
+  static FRONTALIS_LAW Batch between(const typename GroupBoxes<Real>::Boxes& one, int at,
+                                     const typename GroupBoxes<Real>::Boxes& others, int lane)
+  {
+    const Batch none = Number::of(0);
+    Batch squared = none;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const Batch above = farthest ? Lanes::load(others.most[axis] + lane) - Batch(one.least[axis][at])
+                                   : Lanes::load(others.least[axis] + lane) - Batch(one.most[axis][at]);
+      const Batch below = farthest ? Batch(one.most[axis][at]) - Lanes::load(others.least[axis] + lane)
+                                   : Batch(one.least[axis][at]) - Lanes::load(others.most[axis] + lane);
+      const Batch longer = Number::max(none, Number::max(above, below));
+      squared = squared + longer * longer;
+    }
+    return squared;
+  }
+
+  static std::uint32_t approach(const GroupBoxes<Real>& one, int at, const GroupBoxes<Real>& others, Real reach,
+                                Real enough, Real (&largest)[touch_width])
+  {
+    std::uint32_t bits = 0;
+    for (int lane = 0; lane < touch_width; lane += Lanes::count)
+    {
+      const Batch apart = Number::sqrt(between<false>(one.place, at, others.place, lane));
+      const Batch way = Number::sqrt(between<true>(one.way, at, others.way, lane));
+      const Batch value = Number::min(way, Batch(reach) - apart);
+      bits |= Lanes::positive(value - Batch(enough)) << lane;
+      const Batch most = Lanes::load(largest + lane);
+      Lanes::store(Number::select(value > Batch(enough), most, Number::max(most, value)), largest + lane);
+    }
+    return bits;
+  }
+
   static TouchKernels<Real> kernels()
   {
-    TouchKernels<Real> kernels{ place, touch, spread, {} };
+    TouchKernels<Real> kernels{ place, touch, spread, near, approach, {} };
     for (int l = 0; l < touch_width; ++l)
       kernels.record[l] = 4 * (l / Lanes::count * Lanes::count) + Lanes::record(l % Lanes::count);
     return kernels;
