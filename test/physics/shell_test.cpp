@@ -218,6 +218,7 @@ TEST(ShellLaw, no_moment_passes_an_edge_at_which_the_layer_ends)
   Vertices rest = patch();
   for (Vector& v : rest)
     v.z = 0;
+  rest[2] = { 0.05e-3, edge, 0 };
   const ShellMesh::Triangle ends = shell_triangle(rest, { false, true, true }, thickness, young, poisson);
   const Vector along = (1 / norm(rest[2] - rest[1])) * (rest[2] - rest[1]), across{ along.y, -along.x, 0 };
   const double plate = young * std::pow(thickness, 3) / (12 * (1 - poisson * poisson));

@@ -18,7 +18,7 @@ constexpr int sweeps = 10;
 constexpr double largest_change = 0.8;
 
 // Cosine of the angle between the bending vectors of two edges of the shell, above which they count as parallel. It
-// allows edges to differ by about 8 degrees.
+// allows edges to differ by 8 to 11 degrees, depending on Poisson's ratio.
 constexpr double parallel = 0.98;
 
 // A triangle whose bending acts on a vertex. Bending vectors are given in the axes of the triangle or in those of the
