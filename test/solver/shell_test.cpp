@@ -6,6 +6,9 @@
 #include "shell_model.hpp"
 
 #include "frontalis/model/effects.hpp"
+#include "frontalis/physics/hourglass.hpp"
+#include "frontalis/solver/shell_mesh.hpp"
+#include "solver/stepping/discretisation.hpp"
 
 #include <gtest/gtest.h>
 
@@ -253,6 +256,107 @@ TEST_P(ShellBackend, it_settles_at_the_damping_that_its_own_stiffness_needs)
   constexpr double period = 0.14;  // period of a beam's slowest vibration [s]
   const auto solver = make(model, 1, false);
   EXPECT_TRUE(solver->settle(solver->controls(), 1e-3, 8 * period).reached);
+}
+
+// A plate of irregular triangles, 20 edges long and wide, in one voxel. Most vertices have six neighbours.
+Model irregular_plate()
+{
+  constexpr int n = 20;
+  constexpr double edge = 1e-3;
+  BlockSettings settings;
+  settings.voxels = { { 1, 1, 1 } };
+  const double side = (n + 3) * edge;
+  settings.spacing = { { side, side, side } };
+  Model model = block_model(settings);
+  Shell shell;
+  shell.name = "plate";
+  shell.thickness = 0.1 * edge;
+  for (int j = 0; j <= n; ++j)
+    for (int i = 0; i <= n; ++i)
+    {
+      const double x = i + 0.5 * (j % 2) + 0.15 * std::sin(3.0 * i + 5 * j);
+      const double y = std::sqrt(0.75) * j + 0.15 * std::cos(4.0 * i + 3 * j);
+      shell.surface.vertices.push_back({ { edge * (x + 1), edge * (y + 1), 0 } });
+    }
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i)
+    {
+      const int a = j * (n + 1) + i, b = a + 1, c = a + n + 1, d = c + 1;
+      const bool slash = (j % 2 == 1) != ((3 * i + 5 * j) % 17 == 0);
+      shell.surface.triangles.push_back(slash ? std::array<std::int32_t, 3>{ { a, b, d } }
+                                              : std::array<std::int32_t, 3>{ { a, b, c } });
+      shell.surface.triangles.push_back(slash ? std::array<std::int32_t, 3>{ { a, d, c } }
+                                              : std::array<std::int32_t, 3>{ { b, d, c } });
+    }
+  for (const auto& v : shell.surface.vertices)
+  {
+    shell.binding.voxel.push_back(0);
+    shell.binding.coordinates.push_back({ { static_cast<float>(v[0] / side), static_cast<float>(v[1] / side), 0 } });
+  }
+  model.shells.push_back(shell);
+  return model;
+}
+
+// The patch test of bending: in uniform curvatures, forces cancel at vertices away from the rim, up to a quarter of
+// what triangles leave that do not know of each other, and the energy is that of a plate.
+TEST(ShellBending, a_uniform_moment_is_in_equilibrium_on_irregular_triangles)
+{
+  using Vector = physics::Vec3<double>;
+  const Model model = irregular_plate();
+  const Shell& shell = model.shells[0];
+  const ShellMesh mesh(model);
+  const double side = model.spacing[0], edge = 1e-3;
+  const double mu = shear_at_rest(model.materials[0]),
+               young = physics::young_modulus(mu, model.materials[0].parameters[1]);
+  const double poisson = young / (2 * mu) - 1;
+  for (const auto& [xx, yy, xy] : { std::array<double, 3>{ 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 }, { 1, 1, 0 } })
+  {
+    const double curvature = 1e-3 / side;
+    std::vector<Vector> moved(mesh.binding.voxel.size()), force(moved.size(), { 0, 0, 0 }), before = force;
+    std::vector<bool> inner(moved.size());
+    for (std::size_t v = 0; v < moved.size(); ++v)
+    {
+      const double x = mesh.binding.coordinates[v][0] * side, y = mesh.binding.coordinates[v][1] * side;
+      moved[v] = { 0, 0, 0.5 * curvature * (xx * x * x + yy * y * y + 2 * xy * x * y) };
+      inner[v] = x > 5 * edge && x < 18 * edge && y > 5 * edge && y < 15 * edge;
+    }
+    double energy = 0, area = 0;
+    for (const ShellMesh::Triangle& t : mesh.triangles)
+    {
+      Vector u[6];
+      std::array<Vector, 6> rest{};
+      for (std::size_t i = 0; i < 6; ++i)
+      {
+        u[i] = moved[t.vertex[i]];
+        const auto& at = mesh.binding.coordinates[t.vertex[i]];
+        rest[i] = { at[0] * side, at[1] * side, 0 };
+      }
+      if (!t.has_beyond(0) || !t.has_beyond(1) || !t.has_beyond(2))
+        continue;
+      // the same triangle by itself, whose forces do not cancel with those of its neighbours
+      const auto alone = shell_triangle(rest, { true, true, true }, shell.thickness, young, poisson);
+      const auto here = physics::shell_forces(t.rest, u), there = physics::shell_forces(alone.rest, u);
+      for (std::size_t i = 0; i < 6; ++i)
+      {
+        force[t.vertex[i]] = force[t.vertex[i]] + here.force[i];
+        before[t.vertex[i]] = before[t.vertex[i]] + there.force[i];
+      }
+      energy += here.bending;
+      area += 0.5 / t.rest.inverse_area;
+    }
+    double left = 0, first = 0;
+    for (std::size_t v = 0; v < moved.size(); ++v)
+      if (inner[v])
+      {
+        left += force[v].z * force[v].z;
+        first += before[v].z * before[v].z;
+      }
+    EXPECT_LT(std::sqrt(left), 0.3 * std::sqrt(first)) << xx << yy << xy;
+    const double plate = young * std::pow(shell.thickness, 3) / (12 * (1 - poisson * poisson));
+    const double expected = 0.5 * plate * area * curvature * curvature *
+                            (xx * xx + yy * yy + 2 * poisson * xx * yy + 2 * (1 - poisson) * xy * xy);
+    EXPECT_NEAR(energy, expected, 0.01 * expected) << xx << yy << xy;
+  }
 }
 
 FRONTALIS_EVERY_BACKEND(ShellBackend);
