@@ -39,7 +39,6 @@ void BoneMotionLimits::Reach::include(const std::array<double, 3>& p)
 
 BoneMotionLimits::BoneMotionLimits(const Model& model, double critical_step)
     : shortest_edge_(*std::min_element(model.spacing.begin(), model.spacing.end())),
-      far_corner_(far_corner(model)),
       top_speed_(std::isfinite(critical_step) ? way_per_step * shortest_edge_ / critical_step : critical_step)
 {
   constexpr double far = std::numeric_limits<double>::infinity();
@@ -67,7 +66,7 @@ bool BoneMotionLimits::jumps(const Poses& from, const Poses& to, double seconds,
   {
     const RigidTransform onwards = seconds_ > 0 ? interpolate(before_[b], from[b], 1 + time / seconds_) : from[b];
     const RigidTransform now = interpolate(from[b], to[b], time / seconds);
-    velocity = std::max(velocity, farthest_way(onwards, now, far_corner_) / time);
+    velocity = std::max(velocity, reach_[b].fastest_way(onwards, now) / time);
   }
   return velocity / shortest_edge_ * step > velocity_jump_allowed;
 }

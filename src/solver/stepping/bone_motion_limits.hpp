@@ -39,7 +39,6 @@ private:
   };
 
   double shortest_edge_;
-  std::array<double, 3> far_corner_;
   double top_speed_;  // [m/s]
   std::vector<Reach> reach_;
   Poses before_;        // at the start of the latest motion
