@@ -235,8 +235,9 @@ TEST(TimeStepController, follows_the_growth_since_rest_where_the_assembled_model
   EXPECT_TRUE(choose(controller).bound_every_step) << "though this is a fortieth of the bound at rest";
   for (int plan = 0; plan < 20; ++plan)
     controller.observe(0, 10);
-  EXPECT_NEAR(controller.safe_step(), 0.9 * critical / std::sqrt(0.1), 1e-9 * critical)
-      << "it does not become negative";
+  EXPECT_NEAR(controller.safe_step(), 0.9 * critical / std::sqrt(0.125), 1e-9 * critical) << "until the next search";
+  controller.renew_assembled({}, false, [](const auto&) { return 0.08 * rest; });
+  EXPECT_NEAR(controller.safe_step(), 0.9 * critical / std::sqrt(0.1), 1e-9 * critical);
   controller.set_bound_at_rest(2 * rest);
   EXPECT_DOUBLE_EQ(controller.safe_step(), 0.9 * critical / std::sqrt(2.0)) << "effects were switched";
 }

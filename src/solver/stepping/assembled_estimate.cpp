@@ -45,7 +45,7 @@ double AssembledEstimate::frequency_squared(double growth) const
   return found_ * (covered(growth) / (found_ + growth_));
 }
 
-void AssembledEstimate::renew(const std::vector<float>& activation, bool moving, double growth, double most,
+bool AssembledEstimate::renew(const std::vector<float>& activation, bool moving, double growth, double most,
                               const Search& search)
 {
   activation_.resize(activation.size());
@@ -57,7 +57,7 @@ void AssembledEstimate::renew(const std::vector<float>& activation, bool moving,
   const bool grown =
       known() && covered(growth) > growth_allowed * (found_ + growth_) && steps_ >= steps_until_growth_counts;
   if (known() && !activated && !grown && steps_ < steps_valid_)
-    return;
+    return false;
   // A search after growth keeps the activations, because they may be on their way to those.
   const float ahead = activated ? activation_ahead : activation_tolerance;
   for (std::size_t m = 0; m < activation.size() && (activated || !grown); ++m)
@@ -77,6 +77,7 @@ void AssembledEstimate::renew(const std::vector<float>& activation, bool moving,
   softest_ = softest_ > 0 ? std::min(softest_, found_) : found_;
   growth_ = growth;
   steps_ = 0;
+  return true;
 }
 
 void AssembledEstimate::discard() { found_ = growth_ = softest_ = 0; }

@@ -22,7 +22,9 @@ namespace frontalis
 namespace
 {
 
-constexpr double least_tissue = 0.2;  // of a voxel: nodes get the mass of this much if they need inertia
+// Nodes get the mass of at least this much of a voxel's tissue: all if mass is scaled, and attached ones if they would
+// shorten the time step. A node of a single full voxel has 0.125.
+constexpr double least_tissue = 0.1, least_tissue_attached = 0.2;
 
 // Largest stiffness that the fibres of a voxel can add along one direction, with every muscle at full activation.
 double fibre_stiffness(const Model& model, std::size_t voxel, EffectSet running)
@@ -270,7 +272,7 @@ void Discretisation::share_masses()
   for (const AttachedNode& node : model_->attached)
   {
     double& mass = node_mass[node.node];
-    const double wanted = std::min(stiffness[node.node] / highest, least_tissue * mass / tissue[node.node]);
+    const double wanted = std::min(stiffness[node.node] / highest, least_tissue_attached * mass / tissue[node.node]);
     if (node.surface < 0 || !(wanted > mass))
       continue;
     weight_share.resize(node_mass.size(), 1);

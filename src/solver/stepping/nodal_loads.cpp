@@ -38,20 +38,29 @@ void vertex_forces(const Load& load, double ramp, const std::vector<std::array<d
 
 }  // namespace
 
+// Part of a node's mass that gravity acts on: all of it, or with uniform scaling the inverse of the factor.
+double weighed_share(const Model& model)
+{
+  const MassScalingSettings& scaling = model.mass_scaling;
+  return scaling.kind == MassScalingSettings::Kind::uniform ? 1 / scaling.factor : 1;
+}
+
 std::vector<std::int32_t> relieved_nodes(const Model& model, const Discretisation& discretisation)
 {
   std::vector<std::int32_t> nodes;
   const auto& g = model.gravity;
-  if (model.mass_scaling.kind == MassScalingSettings::Kind::selective && (g[0] != 0 || g[1] != 0 || g[2] != 0))
+  const double all = weighed_share(model) * (1 - 1e-6);
+  if (model.mass_scaling.kind != MassScalingSettings::Kind::none && (g[0] != 0 || g[1] != 0 || g[2] != 0))
     for (std::size_t n = 0; n < discretisation.weight_share.size(); ++n)
-      if (discretisation.weight_share[n] < 1)
+      if (double(discretisation.weight_share[n]) < all)
         nodes.push_back(static_cast<std::int32_t>(n));
   return nodes;
 }
 
 std::array<double, 3> gravity_relief(const Model& model, const Discretisation& discretisation, std::int32_t node)
 {
-  const double excess = discretisation.node_mass[node] * (double(discretisation.weight_share[node]) - 1);
+  const double excess =
+      discretisation.node_mass[node] * (double(discretisation.weight_share[node]) - weighed_share(model));
   return { { excess * model.gravity[0], excess * model.gravity[1], excess * model.gravity[2] } };
 }
 

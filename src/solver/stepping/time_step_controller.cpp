@@ -50,7 +50,7 @@ TimeStepController::TimeStepController(double bound_at_rest, TimeStepEstimate es
 void TimeStepController::reset()
 {
   state_ = {};
-  state_.measured = measured_at_rest();
+  state_.measured = state_.latest_measured = measured_at_rest();
 }
 
 double TimeStepController::not_measured() const
@@ -120,10 +120,19 @@ void TimeStepController::observe(double measured, int steps)
   state_.latest_covered = now;
   state_.cautious_steps_left = std::max(stiffens ? steps_after_stiffening : 0, state_.cautious_steps_left - steps);
   state_.vibration_steps_left = std::max(vibrates ? steps_after_vibration : 0, state_.vibration_steps_left - steps);
-  const double softened = slowest_softening * (not_measured() + state_.measured) - not_measured();
+  // The assembled estimate does not soften before the next search.
+  const double softened = (assembled_ ? 1 : slowest_softening) * state_.measured;
   if (!mutation::time_step_of_rest)
     state_.measured = std::max({ measured, softened, measured_at_rest() });
+  state_.latest_measured = measured;
   state_.assembled.steps_taken(steps);
+}
+
+void TimeStepController::renew_assembled(const std::vector<float>& activation, bool moving,
+                                         const AssembledEstimate::Search& search)
+{
+  if (state_.assembled.renew(activation, moving, state_.latest_measured, bound_at_rest_, search))
+    state_.measured = state_.latest_measured;
 }
 
 bool TimeStepController::muscles_switched(const std::vector<float>& from, const std::vector<float>& to)
@@ -147,6 +156,7 @@ void TimeStepController::displacements_set(double measured)
   state_.measured = measured_at_rest();
   if (std::isfinite(measured))
     state_.measured = std::max(measured, measured_at_rest());
+  state_.latest_measured = state_.measured;
   state_.cautious_steps_left = steps_after_stiffening;
   state_.assembled.discard();
 }

@@ -19,15 +19,16 @@ class TimeStepController
 public:
   struct State
   {
-    double measured = 0;        ///< from which steps are chosen [1/s2]
-    double latest_covered = 0;  ///< squared frequency that was covered in the latest plan [1/s2]
+    double measured = 0;         ///< from which steps are chosen [1/s2]
+    double latest_measured = 0;  ///< in the latest plan [1/s2]
+    double latest_covered = 0;   ///< squared frequency that was covered in the latest plan [1/s2]
     int cautious_steps_left = 0;
     int vibration_steps_left = 0;
     AssembledEstimate assembled;
 
     void archive(ByteArchive& archive)
     {
-      archive(measured)(latest_covered)(cautious_steps_left)(vibration_steps_left);
+      archive(measured)(latest_measured)(latest_covered)(cautious_steps_left)(vibration_steps_left);
       assembled.archive(archive);
     }
   };
@@ -72,10 +73,7 @@ public:
     state_.assembled.discard();
   }
   /// Searches for the highest frequency of the assembled model if this is due (AssembledEstimate::renew()).
-  void renew_assembled(const std::vector<float>& activation, bool moving, const AssembledEstimate::Search& search)
-  {
-    state_.assembled.renew(activation, moving, state_.measured, bound_at_rest_, search);
-  }
+  void renew_assembled(const std::vector<float>& activation, bool moving, const AssembledEstimate::Search& search);
   void reset();
 
   const State& state() const { return state_; }
