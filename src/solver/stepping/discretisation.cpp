@@ -22,10 +22,6 @@ namespace frontalis
 namespace
 {
 
-// Nodes get the mass of at least this much of a voxel's tissue: all if mass is scaled, and attached ones if they would
-// shorten the time step. A node of a single full voxel has 0.125.
-constexpr double least_tissue = 0.1, least_tissue_attached = 0.2;
-
 // Largest stiffness that the fibres of a voxel can add along one direction, with every muscle at full activation.
 double fibre_stiffness(const Model& model, std::size_t voxel, EffectSet running)
 {
@@ -214,7 +210,7 @@ Discretisation::Discretisation(const Model& model)
     }
   }
   if (scaling.kind == MassScalingSettings::Kind::uniform && !mass_factor_.empty())
-    raise_least_masses();
+    raise_least_masses(model, node_mass);
   for (std::size_t n = 0; n < weight.size(); ++n)
     weight_share.push_back(static_cast<float>(weight[n] / node_mass[n]));
   if (!model.attached.empty())
@@ -227,19 +223,6 @@ Discretisation::Discretisation(const Model& model)
   for (const auto& stiffness : added)
     stiffness->stiffen(model, *this);
   bound_at_rest();
-}
-
-// Where mass is scaled, nodes with little tissue around them get at least the mass of `least_tissue` of a voxel's. A
-// single voxel that is nearly empty may otherwise set the time step of the model as it is distorted, and its corners
-// are thrown by waves from the tissue around it.
-void Discretisation::raise_least_masses()
-{
-  std::vector<double> tissue(node_mass.size(), 0);
-  for (std::size_t e = 0; e < model_->voxels.size(); ++e)
-    for (const std::int32_t node : model_->voxel_nodes[e])
-      tissue[node] += double(model_->fill[e]) / 8;
-  for (std::size_t n = 0; n < node_mass.size(); ++n)
-    node_mass[n] *= std::max(1.0, least_tissue / tissue[n]);
 }
 
 // Adds inertia to attached nodes that slide and would shorten the time step. Such a node may have a higher frequency
@@ -272,7 +255,7 @@ void Discretisation::share_masses()
   for (const AttachedNode& node : model_->attached)
   {
     double& mass = node_mass[node.node];
-    const double wanted = std::min(stiffness[node.node] / highest, least_tissue_attached * mass / tissue[node.node]);
+    const double wanted = std::min(stiffness[node.node] / highest, 0.2 * mass / tissue[node.node]);
     if (node.surface < 0 || !(wanted > mass))
       continue;
     weight_share.resize(node_mass.size(), 1);

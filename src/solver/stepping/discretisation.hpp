@@ -113,7 +113,6 @@ public:
 private:
   void mix(std::size_t index, VoxelProperties& out) const;
   void bound_at_rest();
-  void raise_least_masses();
   void share_masses();
 
   const Model* model_;
