@@ -76,8 +76,9 @@ protected:
     maker.content = [](const AccuracySetting& s)
     {
       std::string text;
-      for (const double value : { s.profile.voxel[0], s.profile.time_step_share, s.profile.bulk_modulus_max, s.time_scaling,
-                                  static_cast<double>(s.profile.samples), s.profile.assumed_strain ? 1.0 : 0.0 })
+      for (const double value :
+           { s.profile.voxel[0], s.profile.time_step_share, s.profile.bulk_modulus_max, s.time_scaling,
+             static_cast<double>(s.profile.samples), s.profile.assumed_strain ? 1.0 : 0.0 })
         text += std::to_string(1e6 * value) + " ";
       return text + s.profile.precision;
     };

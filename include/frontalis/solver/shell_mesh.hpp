@@ -42,8 +42,9 @@ private:
 /// hence k = T^-1 times the change of heights. The energy is 1/2 A k^T C k, C = D [1 nu 0; nu 1 0; 0 0 (1 - nu) / 2]
 /// and D = E t^3 / (12 (1 - nu^2)), as in a plate (Timoshenko & Woinowsky-Krieger, Theory of Plates and Shells). Where
 /// the six vertices lie close to a conic, T is nearly singular; Tikhonov's regularisation then limits its inverse. The
-/// energy of a constant curvature is exact on any mesh, but the forces of a uniform moment cancel at vertices only where
-/// triangles are regular. ShellMesh then changes the energies so that they cancel elsewhere, too (doc/wrinkles.md).
+/// energy of a constant curvature is exact on any mesh, but the forces of a uniform moment cancel at vertices only
+/// where triangles are regular. ShellMesh then changes the energies so that they cancel elsewhere, too
+/// (doc/wrinkles.md).
 ShellMesh::Triangle shell_triangle(const std::array<physics::Vec3<double>, 6>& x, const std::array<bool, 3>& beyond,
                                    double thickness, double young, double poisson);
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "solver/shell/bent_triangle.hpp"
+#include "solver/shell/shell_triangle.hpp"
 
 #include <vector>
 

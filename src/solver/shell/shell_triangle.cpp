@@ -1,4 +1,4 @@
-#include "solver/shell/bent_triangle.hpp"
+#include "solver/shell/shell_triangle.hpp"
 
 #include <algorithm>
 #include <cmath>
