@@ -194,6 +194,7 @@ void TriangleTree<Real>::set_ball(std::size_t ball, const Vector& centre, double
   }
   block.farthest[lane] = finite ? static_cast<Real>(farthest * farthest) : 0;
 }
+
 // Sets the balls of the levels above the triangles. Their normals are the axes of cones: a vertex that points the same
 // way as such a cone points the same way as all triangles.
 template <class Real>

@@ -8,7 +8,7 @@ namespace frontalis
 namespace
 {
 
-// What some voxels have and others do not: a pair of a kind and an index within it.
+// What some voxels have and others do not: a kind, and up to two indices within it.
 enum Kind : std::int32_t
 {
   muscle,
