@@ -11,7 +11,7 @@ namespace
 {
 
 // a block of one material
-Model bake_material(const SceneMaterial& material)
+Model bake_material(const SceneMaterial& material, double bulk_modulus_max = 0)
 {
   Scene scene;
   Surface block;
@@ -29,6 +29,7 @@ Model bake_material(const SceneMaterial& material)
   scene.skin.surface = "block";
   scene.accuracy.voxel = { 1e-3, 1e-3, 1e-3 };
   scene.accuracy.assumed_strain = true;
+  scene.accuracy.bulk_modulus_max = bulk_modulus_max;
   return bake(scene);
 }
 
@@ -83,6 +84,22 @@ TEST(Materials, EveryLawArrivesWithItsBulkModulus)
   EXPECT_EQ(heart.materials[0].law, law_of<physics::Guccione>);
   EXPECT_NEAR(heart.materials[0].parameters[1], bulk(8e3), 1e-6);
   EXPECT_EQ(heart.materials[0].parameters[4], 4);
+}
+
+TEST(Materials, BulkModuliAreLimited)
+{
+  SceneMaterial material = of_law("neo_hookean", { { "young", 60e3 } });
+  material.parameters["poisson"] = 0.49;
+  const auto bulk = [&](double limit)
+  {
+    const Material baked = bake_material(material, limit).materials.at(0);
+    EXPECT_NEAR(physics::shear_modulus_of(baked.law, baked.parameters), 60e3 / 2.98, 1) << "it stays";
+    return baked.parameters[physics::bulk_modulus_slot];
+  };
+  EXPECT_NEAR(bulk(0), 1e6, 1);
+  EXPECT_NEAR(bulk(2e6), 1e6, 1);
+  EXPECT_NEAR(bulk(250e3), 250e3, 1);
+  EXPECT_NEAR(bulk(1e3), 14.0 / 3 * 60e3 / 2.98, 1) << "that of Poisson's ratio 0.4";
 }
 
 TEST(Materials, FibreFamiliesTurnIntoLocalAxes)
