@@ -55,19 +55,16 @@ void DeviceModel::run_fibres(const Model& model, const Discretisation& discretis
       strip.fibre_begin = Strip::none;
   strips_.upload(strips.data(), strips.size());
 
-  // The palette has the stiffness bounds of voxels, which depend on the running effects.
-  std::vector<float4> palette;
-  palette_.download(palette);
-  for (float4& entry : palette)
-    entry.w = 0;
+  // The stiffness bounds of voxels depend on the running effects.
+  std::vector<float> bounds(stiffness_bounds_.size(), 0);
   VoxelProperties voxel;
   for (std::size_t e = 0; e < palette_of_voxel_.size(); ++e)
   {
     discretisation.voxel(e, voxel);
-    float& bound = palette[palette_of_voxel_[e]].w;
+    float& bound = bounds[palette_of_voxel_[e]];
     bound = std::max(bound, static_cast<float>(voxel.measured_at_rest));
   }
-  palette_.upload(palette.data(), palette.size());
+  stiffness_bounds_.upload(bounds.data(), bounds.size());
 }
 
 void DeviceModel::run_tasks(EffectSet running)
@@ -166,7 +163,7 @@ void DeviceModel::list_arrays(Effect of_fibres, ArrayList& list)
   add(Effect::elasticity, "strips", strips_, slots_);
   add(Effect::elasticity, "patches", patches_, patch_corners_, node_voxels_, patch_properties_, halo_);
   add(Effect::elasticity, "inverse masses", mobility_);
-  add(Effect::elasticity, "palette", palette_, stabilisation_, law_begin_, laws_);
+  add(Effect::elasticity, "palette", palette_, stiffness_bounds_, stabilisation_, law_begin_, laws_);
   add(Effect::elasticity, "added stress", added_voxels_, added_stress_);
   add(Effect::cut_voxels, "centroids of tissue", centres_, corner_stiffness_);
   add(of_fibres, "fibres", fibre_words_, fibre_muscle_, fibres_);

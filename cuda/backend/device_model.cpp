@@ -147,6 +147,7 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
   g.strip_count = static_cast<std::uint32_t>(strips_.size());
   g.mobility = mobility_.data();
   g.palette = palette_.data();
+  g.stiffness_bounds = stiffness_bounds_.data();
   g.stabilisation = stabilisation_.data();
   g.centres = centres_.data();
   g.corner_stiffness = corner_stiffness_.data();
@@ -199,6 +200,7 @@ std::vector<std::uint32_t> DeviceModel::add_palette(const Model& model, const Di
 {
   const bool stabilised = d.assumed_strain, cut = !d.corner_stiffness.empty();
   std::vector<float4> entries(1, float4{ 0, 0, 0, 0 });
+  std::vector<float> bounds(1, 0);
   std::vector<float4> more(stabilised ? 1 : 0, float4{ 0, 0, 0, 0 });
   std::vector<float4> centres(cut ? 1 : 0, float4{ 0, 0, 0, 0 });
   std::vector<float4> corners(cut ? 2 : 0, float4{ 0, 0, 0, 0 });
@@ -220,8 +222,8 @@ std::vector<std::uint32_t> DeviceModel::add_palette(const Model& model, const Di
   {
     d.voxel(e, voxel);
     entry.clear();
-    for (const double x :
-         { voxel.mu * voxel.tissue_volume, voxel.kappa * voxel.tissue_volume, voxel.hourglass, voxel.measured_at_rest })
+    for (const double x : { voxel.mu * voxel.tissue_volume, voxel.kappa * voxel.tissue_volume, voxel.hourglass,
+                            voxel.stiffening, voxel.measured_at_rest })
       entry.push_back(static_cast<float>(x));
     const auto& form = voxel.stabilisation;
     if (stabilised)
@@ -251,11 +253,12 @@ std::vector<std::uint32_t> DeviceModel::add_palette(const Model& model, const Di
       if (index == entries.size())
       {
         entries.push_back(float4{ entry[0], entry[1], entry[2], entry[3] });
-        std::size_t at = 4;
+        bounds.push_back(entry[4]);
+        std::size_t at = 5;
         if (stabilised)
         {
-          more.push_back(float4{ entry[4], entry[5], entry[6], entry[7] });
-          at = 8;
+          more.push_back(float4{ entry[5], entry[6], entry[7], entry[8] });
+          at = 9;
         }
         if (cut)
         {
@@ -282,6 +285,7 @@ std::vector<std::uint32_t> DeviceModel::add_palette(const Model& model, const Di
   }
   viscosity_.set_palette(entry_of);
   palette_ = DeviceArray<float4>(entries);
+  stiffness_bounds_ = DeviceArray<float>(bounds);
   stabilisation_ = DeviceArray<float4>(more);
   centres_ = DeviceArray<float4>(centres);
   corner_stiffness_ = DeviceArray<float4>(corners);

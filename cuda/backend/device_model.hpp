@@ -131,7 +131,7 @@ private:
   DeviceArray<Strip> strips_;
   double filled_ = 1;
   DeviceArray<StripSlot> slots_;
-  DeviceArray<float> mobility_;
+  DeviceArray<float> mobility_, stiffness_bounds_;
   DeviceArray<float4> palette_, stabilisation_, centres_, corner_stiffness_;
   DeviceArray<std::uint32_t> law_begin_;
   DeviceArray<LawEntry> laws_;

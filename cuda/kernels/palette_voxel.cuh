@@ -39,14 +39,14 @@ struct PaletteVoxel
   {
     return has<With, Effects::general_element> && g.selective_reduced;
   }
-  __device__ __forceinline__ physics::NeoHookean<T> material() const { return { T(entry.x), T(entry.y) }; }
+  __device__ __forceinline__ physics::NeoHookean<T> material() const { return { T(entry.x), T(entry.y), T(entry.w) }; }
   __device__ __forceinline__ T hourglass() const { return T(entry.z); }
   __device__ __forceinline__ void scalar_hourglass(T (&mode)[3][8]) const
   {
     for (auto& component : mode)
       physics::scalar_hourglass(hourglass(), component);
   }
-  __device__ __forceinline__ T bound_at_rest() const { return T(entry.w); }
+  __device__ __forceinline__ T bound_at_rest() const { return T(__ldg(g.stiffness_bounds + palette)); }
   __device__ __forceinline__ physics::AssumedStrain<T> stabilisation() const
   {
     const float4 s = __ldg(g.stabilisation + palette);

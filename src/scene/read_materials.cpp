@@ -54,9 +54,11 @@ double read_parameter(const physics::Parameter& parameter, Mapping& mapping)
   const physics::Range& range = parameter.range;
   const Bound bound{ range.lower, range.upper, range.lower_allowed, range.upper_allowed };
   const std::string limits = range.zero_allowed ? bound.text() : "other than 0";
-  const Node node =
-      mapping.required(parameter.key, fmt::format("{}, {}{}{}", parameter.meaning, number ? "a number" : "a pressure",
-                                                  limits.empty() ? "" : " ", limits));
+  const Node node = parameter.optional
+                        ? mapping.optional(parameter.key)
+                        : mapping.required(parameter.key, fmt::format("{}, {}{}{}", parameter.meaning,
+                                                                      number ? "a number" : "a pressure",
+                                                                      limits.empty() ? "" : " ", limits));
   const double value = node.number(number ? Dimension::number : Dimension::pressure, bound, 0);
   if (node.given() && value == 0 && !range.zero_allowed && !node.faulty())
     node.fault("found '0'; must not be 0");

@@ -30,7 +30,8 @@ struct ModelVoxel
   bool selective_reduced() const { return discretisation.selective_reduced; }
   physics::NeoHookean<double> material() const
   {
-    return { properties.mu * properties.tissue_volume, properties.kappa * properties.tissue_volume };
+    return { properties.mu * properties.tissue_volume, properties.kappa * properties.tissue_volume,
+             properties.stiffening };
   }
   double hourglass() const { return properties.hourglass; }
   double bound_at_rest() const { return properties.measured_at_rest; }

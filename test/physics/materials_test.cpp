@@ -116,7 +116,7 @@ TEST(Ogden, WithExponentTwoIsNeoHookean)
   F.a[1][0] = 0.3;
   F.a[2][2] = 0.7;
   add_stress(Ogden<double>{ 1.0, 2.0, 0.0, 1.0 }, kinematics_of(F), P);
-  add_stress(NeoHookean<double>{ 1.0, 0.0 }, kinematics_of(F), expected);
+  add_stress(NeoHookean<double>{ 1.0, 0.0, 0.0 }, kinematics_of(F), expected);
   EXPECT_LT(test::distance(P, expected), 1e-9);
 }
 

@@ -20,7 +20,7 @@ Matrix first_piola(const NeoHookean<double>& material, const Matrix& F)
 }
 
 // A material with nu = 0.49 and mu = 1.
-const NeoHookean<double> material{ 1.0, 2.0 * 1.49 / (3.0 * 0.02) };
+const NeoHookean<double> material{ 1.0, 2.0 * 1.49 / (3.0 * 0.02), 0 };
 
 void expect_gradient_of_energy(const Matrix& F)
 {
@@ -110,6 +110,19 @@ TEST(NeoHookean, SimpleShear)
   EXPECT_NEAR(cauchy(0, 0), 2.0 / 3 * shear * shear, 1e-12);
   EXPECT_NEAR(cauchy(1, 1), -shear * shear / 3, 1e-12);
   EXPECT_NEAR(cauchy(2, 2), -shear * shear / 3, 1e-12);
+}
+
+// In simple shear the isochoric first invariant is 3 + shear^2.
+TEST(NeoHookean, StiffeningAddsTheCubeOfTheShear)
+{
+  NeoHookean<double> stiffening = material;
+  stiffening.stiffening = 0.3;
+  for (const double shear : { 0.1, 0.4, 2.0 })
+  {
+    Matrix F = diagonal(1, 1, 1);
+    F.a[0][1] = shear;
+    EXPECT_NEAR(first_piola(stiffening, F).a[0][1], shear + 0.3 * shear * shear * shear, 1e-12) << shear;
+  }
 }
 
 TEST(NeoHookean, CrushedAndInvertedElementsArePushedOpen)

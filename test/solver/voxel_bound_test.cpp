@@ -116,6 +116,7 @@ INSTANTIATE_TEST_SUITE_P(
     Laws, TimeStepBound,
     testing::Values(
         Tissue{ "neo_hookean", Law::neo_hookean, 0.49, {}, 1.01 },
+        Tissue{ "neo_hookean_stiffening", Law::neo_hookean, 0.49, { mu, 0, 3 }, 1.01 },
         Tissue{ "neo_hookean_compressible", Law::neo_hookean, 0.3, {}, 1.1 },
         Tissue{ "neo_hookean_nearly_incompressible", Law::neo_hookean, 0.4999, {}, 1.01 },
         Tissue{ "mooney_rivlin", law_of<physics::MooneyRivlin>, 0.49, { 0.25 * mu, 0, 0.25 * mu }, 1.01 },

@@ -62,11 +62,20 @@ FRONTALIS_LAW T voxel_stiffness_now(T at_rest, const NeoHookean<T>& material, co
   const T volumetric = along - N::of(1) + dilatation * turning;
   const IsochoricScale<T> g = isochoric_scale(k.J);
   const T bend = isochoric_bend(g, k.J);
+  // Half of the second derivative of x = g I1 - 3, and its value at F = 1, where I1 = 3, cof F = 1 and g' = -2/3.
   const T isochoric = N::of(0.5) * k.I1 * bend * along - N::of(2) * g.slope * N::sqrt(k.I1 * along * largest) +
                       N::of(2) * g.value * largest - N::of(0.5) * g.slope * k.I1 * turning;
-  // The value of `isochoric` at F = 1, where I1 = 3, cof F = 1 and g' = -2/3.
   const T isochoric_at_rest = N::of(5.0 / 3) + N::of(4.0 / 3) * N::sqrt(N::of(3) * largest) + N::of(4) * largest;
-  const T grown = material.kappa * volumetric + material.mu * N::max(isochoric - isochoric_at_rest, N::of(0));
+  T slope_squared = N::of(0);  // of x, weighted as `along`
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+    {
+      const T slope = N::of(2) * g.value * k.F.a[i][j] + g.slope * k.I1 * k.cofactor.a[i][j];
+      slope_squared = slope_squared + slope * slope * T(weight[j]);
+    }
+  const T secant = secant_modulus(material, g.value * k.I1);
+  const T grown = material.kappa * volumetric + N::max(secant * isochoric - material.mu * isochoric_at_rest, N::of(0)) +
+                  N::of(0.5) * material.mu * material.stiffening * slope_squared;
   return at_rest + T(half_sum) * N::max(grown, N::of(0)) + (grown - grown);
 }
 

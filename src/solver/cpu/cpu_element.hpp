@@ -58,7 +58,7 @@ struct CpuElement
     FRONTALIS_LAW physics::NeoHookean<Batch> material() const
     {
       const TileStiffness& s = g.stiffness[index];
-      return { load(s.mu), load(s.kappa) };
+      return { load(s.mu), load(s.kappa), load(s.stiffening) };
     }
     FRONTALIS_LAW Batch hourglass() const { return load(g.stiffness[index].hourglass); }
     FRONTALIS_LAW Batch bound_at_rest() const { return load(g.stiffness[index].bound); }

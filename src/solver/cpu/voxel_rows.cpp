@@ -120,6 +120,7 @@ TileStiffness stiffness_of(const TileVoxels& voxels)
     const VoxelProperties& v = voxels[lane];
     s.mu[lane] = static_cast<float>(v.mu * v.tissue_volume);
     s.kappa[lane] = static_cast<float>(v.kappa * v.tissue_volume);
+    s.stiffening[lane] = static_cast<float>(v.stiffening);
     s.hourglass[lane] = static_cast<float>(v.hourglass);
     s.bound[lane] = static_cast<float>(v.measured_at_rest);
   }

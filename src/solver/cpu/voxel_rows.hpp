@@ -36,10 +36,11 @@ struct Tile
 /// Elasticity of a tile's voxels; 0 in unused lanes.
 struct alignas(64) TileStiffness
 {
-  float mu[Tile::width];         ///< shear modulus times tissue volume [N m]
-  float kappa[Tile::width];      ///< bulk modulus times tissue volume [N m]
-  float hourglass[Tile::width];  ///< scalar stiffness [N/m]
-  float bound[Tile::width];      ///< bound of the largest eigenvalue of the stiffness at rest [N/m]
+  float mu[Tile::width];          ///< shear modulus times tissue volume [N m]
+  float kappa[Tile::width];       ///< bulk modulus times tissue volume [N m]
+  float stiffening[Tile::width];  ///< of the neo-Hookean law [-]
+  float hourglass[Tile::width];   ///< scalar stiffness [N/m]
+  float bound[Tile::width];       ///< bound of the largest eigenvalue of the stiffness at rest [N/m]
 };
 
 /// Assumed-strain hourglass control of a tile's voxels [N m].

@@ -26,7 +26,8 @@ constexpr double step_share_allowed = 1.1;
 // random scenes the change is below 0.1 of that term (test/study/property_test.cpp).
 constexpr double imbalance_allowed = 0.2;
 // A voxel is reported as the origin of the instability if its J is below `crushed`, or if it is the stiffest one and
-// the critical step has fallen below the fraction `stiffened` of the critical step of the last good state.
+// the critical step has fallen below the fraction `stiffened` of the critical step of the last good state. Such a fall
+// of the time step is a sign of an instability, so that the next check is then due at once.
 constexpr double crushed = 0.2;
 constexpr double stiffened = 0.5;
 
@@ -55,6 +56,7 @@ struct Guard::Implementation
   std::vector<float> activation;  // largest activation of each muscle since `good`
   std::vector<double> bone_way;   // length of each bone's path since `good` [m]
   std::int64_t checked_at = 0;    // solver steps at the latest check
+  double checked_step = 0;        // time step at the latest check [s]
   int good_checks = 0;            // number of checks without a finding since the latest rollback
   int tries = 0;
   bool settling = false;
@@ -62,6 +64,10 @@ struct Guard::Implementation
 
   double energy(const Monitor& m) const { return m.kinetic + m.internal + m.hourglass; }
   std::int64_t steps() const { return solver.profile().steps; }
+  bool check_is_due() const
+  {
+    return steps() - checked_at >= settings.interval || (tries == 0 && solver.time_step() < stiffened * checked_step);
+  }
   void keep(const Monitor& monitor, double imbalance);
   Instability judged(const Monitor& monitor, double imbalance, double largest) const;
   Instability check();
@@ -111,6 +117,7 @@ Instability Guard::Implementation::check()
   const auto start = std::chrono::steady_clock::now();
   ++counts.checks;
   checked_at = steps();
+  checked_step = solver.time_step();
   const Monitor monitor = solver.monitor();
   EnergyLedger ledger;
   if (settings.ledger && monitor.finite && !settling)
@@ -236,7 +243,7 @@ Guard::Guard(Solver& solver, std::shared_ptr<const Model> model, const GuardSett
 {
   const Model& watched = *model;
   self_.reset(new Implementation{
-      solver, std::move(model), settings, EnergyBound(watched), {}, {}, {}, {}, 0, 0, 0, false, {} });
+      solver, std::move(model), settings, EnergyBound(watched), {}, {}, {}, {}, 0, 0, 0, 0, false, {} });
   const auto refuse = [](const char* what, double value, const char* allowed)
   { throw Error(fmt::format("guard's {} is {:g}; allowed is {}", what, value, allowed)); };
   if (settings.interval < 0)
@@ -267,6 +274,7 @@ void Guard::restart()
   g.tries = 0;
   g.solver.slow_down(1);
   g.checked_at = g.steps();
+  g.checked_step = g.solver.time_step();
 }
 
 void Guard::check()
@@ -295,7 +303,7 @@ void Guard::advance(double seconds, const Controls& target)
         g.activation[m] = std::max({ g.activation[m], to.activation[m], g.solver.activation()[m] });
       for (std::size_t b = 0; b < to.bone.size(); ++b)
         g.bone_way[b] += farthest_way(from[b], g.solver.controls().bone[b], far_corner(*g.model));
-      return g.steps() - g.checked_at >= g.settings.interval ? g.check() : Instability::none;
+      return g.check_is_due() ? g.check() : Instability::none;
     };
     const Instability finding = attempted(go);
     if (finding != Instability::none)

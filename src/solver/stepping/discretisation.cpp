@@ -288,7 +288,7 @@ void Discretisation::mix(std::size_t e, VoxelProperties& out) const
 {
   const Model& model = *model_;
   const auto& h = model.spacing;
-  out.mu = out.kappa = out.density = 0;
+  out.mu = out.kappa = out.stiffening = out.density = 0;
   out.viscous_share = out.viscous_rate = {};
   out.laws.clear();
   for (auto m = model.mixture_begin[e]; m < model.mixture_begin[e + 1]; ++m)
@@ -296,12 +296,17 @@ void Discretisation::mix(std::size_t e, VoxelProperties& out) const
     const Material& material = model.materials[model.mixture_material[m]];
     const double proportion = model.mixture_proportion[m];
     if (material.law == Law::neo_hookean)
-      out.mu += proportion * material.parameters[0];
+    {
+      const double mu = proportion * material.parameters[0];
+      out.mu += mu;
+      out.stiffening += mu * material.parameters[physics::slot_of(1)];
+    }
     else if (proportion > 0)
       add_law(model, e, model.mixture_material[m], proportion, out.laws);
     out.kappa += proportion * material.parameters[1];
     out.density += proportion * material.density;
   }
+  out.stiffening = out.mu > 0 ? out.stiffening / out.mu : 0;
   double shear = out.mu;
   for (auto& part : out.laws)
   {

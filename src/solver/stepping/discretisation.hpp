@@ -34,6 +34,7 @@ struct VoxelProperties
 {
   double mu = 0;                                   ///< neo-Hookean shear modulus, mixed by fraction [Pa]
   double kappa = 0;                                ///< bulk modulus, mixed by fraction [Pa]
+  double stiffening = 0;                           ///< of the neo-Hookean law, mixed by stiffness [-]
   double tissue_volume = 0;                        ///< volume times fill [m3]
   double density = 0;                              ///< mixed, after mass scaling [kg/m3]
   double hourglass = 0;                            ///< scalar stiffness against hourglass modes [N/m]

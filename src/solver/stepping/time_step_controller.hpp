@@ -54,8 +54,9 @@ public:
   double critical_step_at(double measured) const;
   /// What the backend must measure in a plan before to wait for what it measures in the plan itself; see StepPlan.
   double alarming() const;
-  /// The next plan of a motion that ends after `remaining` [s], with steps of at most `longest` [s].
-  Choice choose(double remaining, double longest, const BackendTraits& backend) const;
+  /// The next plan of a motion that ends after `remaining` [s], with steps of at most `longest` [s]. `under_way`:
+  /// whether muscles respond or bones move.
+  Choice choose(double remaining, double longest, bool under_way, const BackendTraits& backend) const;
 
   /// Records the most that a backend measured in the latest plan or in the plan before it.
   void observe(double measured, int steps);

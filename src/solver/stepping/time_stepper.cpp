@@ -23,6 +23,8 @@ namespace
 // Viscous stresses relax at the end of each plan, and whenever this fraction of the shortest time constant has passed.
 constexpr double relaxation_interval = 0.005;
 constexpr double fully_relaxed = 1e9;  // a time longer than any time constant [s]
+// Muscles that have yet to change their activations by more than this are under way.
+constexpr float response_left = 0.1F;
 // During dynamic relaxation, a window ends after this number of steps even if no motion is found.
 constexpr int steps_per_window = 2048;
 
@@ -160,7 +162,7 @@ void TimeStepper::advance(double seconds, const Controls& asked)
   {
     if (model_->time_step_estimate == TimeStepEstimate::assembled)
       renew_assembled_estimate(target);
-    const auto choice = controller_.choose(end - motion_.time, longest_step, traits_);
+    const auto choice = controller_.choose(end - motion_.time, longest_step, under_way(target), traits_);
     const double reached = choice.reaches_end ? end : motion_.time + choice.steps * choice.dt;
     const Controls next = choice.reaches_end ? target : interpolate(from, target, (reached - begin) / seconds);
     const StepPlan plan = plan_to(next, choice);
@@ -175,6 +177,14 @@ void TimeStepper::advance(double seconds, const Controls& asked)
     controller_.observe(measured, plan.steps);
   }
   motion_.controls = target;
+}
+
+bool TimeStepper::under_way(const Controls& target) const
+{
+  for (std::size_t m = 0; m < target.activation.size(); ++m)
+    if (std::abs(target.activation[m] - motion_.activation[m]) > response_left)
+      return true;
+  return !same_poses(target.bone, motion_.controls.bone);
 }
 
 void TimeStepper::renew_assembled_estimate(const Controls& asked)

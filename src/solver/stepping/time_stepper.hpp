@@ -73,6 +73,7 @@ private:
 
   Motion at_rest() const;
   void renew_conditions();
+  bool under_way(const Controls& target) const;  ///< whether muscles respond or bones move
   void renew_assembled_estimate(const Controls& asked);
   StepPlan plan_to(const Controls& next, const TimeStepController::Choice& choice);
   void effects_switched(const std::vector<Effect>& effects);

@@ -115,7 +115,7 @@ void verify_affine_motion(const Backend& other, Finding& finding)
       mode[i][physics::gradient_mode(j)] = F[3 * i + j] - (i == j);
   const auto k = physics::kinematics(mode[0], mode[1], mode[2], one);
   const auto law = physics::stress(physics::NeoHookean<double>{ shear_modulus(voxel_young, voxel_poisson),
-                                                                bulk_modulus(voxel_young, voxel_poisson) },
+                                                                bulk_modulus(voxel_young, voxel_poisson), 0 },
                                    k);
   for (const auto& [backend, bound] : { std::pair<Backend, double>{ "reference", 1e-11 }, { other, 2e-5 } })
   {

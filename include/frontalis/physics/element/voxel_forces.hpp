@@ -53,11 +53,7 @@ FRONTALIS_LAW Matrix3<T> element_stress(const Voxel& voxel, T (&mode)[3][8], boo
 {
   const Kinematics<T> k = kinematics(mode[0], mode[1], mode[2], voxel.scale());
   const bool reduced = voxel.selective_reduced();
-  Matrix3<T> P;
-  if (reduced)
-    P = volumetric_stress(voxel.material(), k);
-  else
-    P = elastic_stress(voxel, voxel.material(), k);
+  Matrix3<T> P = reduced ? volumetric_stress(voxel.material(), k) : elastic_stress(voxel, voxel.material(), k);
   voxel.add_fibres(k, P);
   voxel.add_viscosity(k, P);
   if (with_bound && !reduced)

@@ -35,7 +35,7 @@ FRONTALIS_LAW Solid<T> solid_of(const T* numbers, std::index_sequence<I...>)
 {
   // NeoHookean is the only solid that includes the volumetric part.
   if constexpr (std::is_same_v<Solid<T>, NeoHookean<T>>)
-    return { numbers[0], numbers[bulk_modulus_slot] };
+    return { numbers[0], numbers[bulk_modulus_slot], numbers[slot_of(1)] };
   else
     return { numbers[slot_of(static_cast<int>(I))]... };
 }

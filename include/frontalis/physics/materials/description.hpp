@@ -53,7 +53,8 @@ struct Parameter
   const char* meaning = nullptr;  ///< for error texts: "shear modulus of the matrix"
   Measure measure = Measure::number;
   Range range{};
-  double example = 0;  ///< value for a soft tissue, in SI units
+  double example = 0;     ///< value for a soft tissue, in SI units
+  bool optional = false;  ///< whether a scene may leave it out, which means 0
 };
 
 /// What scenes, models and tests need to know of a law, as plain data: the member `description` of its struct.

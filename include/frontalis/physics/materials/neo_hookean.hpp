@@ -6,15 +6,17 @@
 namespace frontalis::physics
 {
 
-/// Compressible neo-Hookean solid with isochoric split: psi = mu/2 (g(J) I1 - 3) + kappa/2 (J - 1)^2 with g = J^(-2/3)
-/// (Bonet & Wood, Nonlinear Continuum Mechanics for Finite Element Analysis, 6.5). Below a small J, g is continued
-/// (IsochoricScale). The solid includes the volumetric part of all materials; with kappa = 0 it is purely isochoric
-/// like the other laws.
+/// Compressible neo-Hookean solid with isochoric split: psi = mu/2 x + kappa/2 (J - 1)^2 with x = g(J) I1 - 3 and g =
+/// J^(-2/3) (Bonet & Wood, Nonlinear Continuum Mechanics for Finite Element Analysis, 6.5). Stiffening b makes it the
+/// solid of Yeoh (1990, Rubber Chem. Technol. 63:792) with two terms: mu/2 (x + b/2 x^2), whose shear modulus doubles
+/// at x = 1 / b. Below a small J, g is continued (IsochoricScale). The solid includes the volumetric part of all
+/// materials; with kappa = 0 it is purely isochoric like the other laws.
 template <class T>
 struct NeoHookean
 {
-  T mu;     ///< shear modulus [Pa]
-  T kappa;  ///< bulk modulus [Pa]
+  T mu;          ///< shear modulus at rest [Pa]
+  T kappa;       ///< bulk modulus [Pa]
+  T stiffening;  ///< b, >= 0 [-]
 
   static constexpr MaterialDescription description{
     "neo_hookean",
@@ -22,7 +24,8 @@ struct NeoHookean
     "young / (2 (1 + poisson))",
     true,  // averaged
     0,     // directions
-    { { "young", "Young's modulus", Measure::young_modulus, above_zero, 30e3 } },
+    { { "young", "Young's modulus", Measure::young_modulus, above_zero, 30e3 },
+      { "stiffening", "stiffening", Measure::number, from_zero, 0.3, true } },
   };
 };
 
@@ -30,6 +33,13 @@ template <class T>
 FRONTALIS_LAW T shear_modulus(const NeoHookean<T>& material)
 {
   return material.mu;
+}
+
+/// Shear modulus [Pa] that relates stress to strain at an isochoric first invariant g I1: 2 d psi / d x.
+template <class T>
+FRONTALIS_LAW T secant_modulus(const NeoHookean<T>& material, const T& invariant)
+{
+  return material.mu + material.mu * material.stiffening * (invariant - Number<T>::of(3));
 }
 
 /// First Piola-Kirchhoff stress [Pa] as P = on_gradient F + on_cofactor cof F.
@@ -45,7 +55,8 @@ FRONTALIS_LAW IsotropicStress<T> stress(const NeoHookean<T>& material, const Kin
 {
   using N = Number<T>;
   const IsochoricScale<T> g = isochoric_scale(k.J);
-  return { material.mu * g.value, N::of(0.5) * material.mu * g.slope * k.I1 + material.kappa * k.dilatation };
+  const T mu = secant_modulus(material, g.value * k.I1);
+  return { mu * g.value, N::of(0.5) * mu * g.slope * k.I1 + material.kappa * k.dilatation };
 }
 
 /// Adds the first Piola-Kirchhoff stress [Pa] to P.
@@ -61,7 +72,8 @@ template <class T>
 FRONTALIS_LAW T energy(const NeoHookean<T>& material, const Kinematics<T>& k)
 {
   using N = Number<T>;
-  return N::of(0.5) * material.mu * (isochoric_scale(k.J).value * k.I1 - N::of(3)) +
+  const T x = isochoric_scale(k.J).value * k.I1 - N::of(3);
+  return N::of(0.5) * material.mu * x * (N::of(1) + N::of(0.5) * material.stiffening * x) +
          N::of(0.5) * material.kappa * k.dilatation * k.dilatation;
 }
 
@@ -69,7 +81,10 @@ FRONTALIS_LAW T energy(const NeoHookean<T>& material, const Kinematics<T>& k)
 template <class T>
 FRONTALIS_LAW T tangent_stiffness(const NeoHookean<T>& material, const Kinematics<T>& k)
 {
-  return Number<T>::of(0.25) * material.mu * first_invariant_derivatives(k).second;
+  using N = Number<T>;
+  const InvariantDerivatives<T> d = first_invariant_derivatives(k);
+  return N::of(0.25) * (secant_modulus(material, isochoric_scale(k.J).value * k.I1) * d.second +
+                        material.mu * material.stiffening * d.first_squared);
 }
 
 }  // namespace frontalis::physics
