@@ -73,3 +73,20 @@ TEST(BoneMotionLimits, notice_jumps_of_velocity)
   EXPECT_TRUE(limits.jumps(moved(speed), moved(0), 1, 0.51 * felt)) << "it turns back";
   EXPECT_FALSE(limits.jumps(moved(speed), moved(0), 0, 1)) << "no time passes";
 }
+
+TEST(BoneMotionLimits, limit_the_length_of_a_plan)
+{
+  const BoneMotionLimits limits(held_block(), 1);
+  EXPECT_NEAR(limits.longest_plan(moved(0), moved(2 * edge), 1), 0.25, 1e-12) << "half a voxel of two";
+  EXPECT_EQ(limits.longest_plan(moved(0), moved(0.4 * edge), 1), 1);
+  EXPECT_EQ(limits.longest_plan(moved(speed), moved(speed), 1), 1);
+}
+
+TEST(BoneMotionLimits, notice_fast_bones)
+{
+  const BoneMotionLimits limits(held_block(), 1);
+  const double felt = 0.015 * edge / speed;  // time step in which a bone with this speed moves by the limit [s]
+  EXPECT_TRUE(limits.fast(moved(0), moved(speed), 1, 1.01 * felt));
+  EXPECT_FALSE(limits.fast(moved(0), moved(speed), 1, 0.99 * felt));
+  EXPECT_FALSE(limits.fast(moved(0), moved(speed), 0, felt)) << "no time passes";
+}

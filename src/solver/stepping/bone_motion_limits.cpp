@@ -13,8 +13,10 @@ namespace
 {
 
 constexpr double way_per_step = 0.1;  // longest path of a bone in a critical step, in shortest voxel edges
+constexpr double way_per_plan = 0.5;  // longest path of a bone in a plan, in shortest voxel edges
 // allowed jump of a bone's velocity, as path per step in shortest voxel edges
 constexpr double velocity_jump_allowed = 0.005;
+constexpr double fast_way_per_step = 0.015;  // of a fast bone, in shortest voxel edges
 constexpr double straight_share = 1.0 / 64;  // fraction of a motion over which a bone's path is taken as straight
 
 }  // namespace
@@ -69,6 +71,25 @@ bool BoneMotionLimits::jumps(const Poses& from, const Poses& to, double seconds,
     velocity = std::max(velocity, reach_[b].fastest_way(onwards, now) / time);
   }
   return velocity / shortest_edge_ * step > velocity_jump_allowed;
+}
+
+double BoneMotionLimits::edges(const Poses& from, const Poses& to) const
+{
+  double farthest = 0;
+  for (std::size_t b = 0; b < to.size(); ++b)
+    farthest = std::max(farthest, reach_[b].fastest_way(from[b], to[b]));
+  return farthest / shortest_edge_;
+}
+
+bool BoneMotionLimits::fast(const Poses& from, const Poses& to, double seconds, double step) const
+{
+  return seconds > 0 && edges(from, to) * step > fast_way_per_step * seconds;
+}
+
+double BoneMotionLimits::longest_plan(const Poses& from, const Poses& to, double seconds) const
+{
+  const double way = edges(from, to);
+  return way > way_per_plan ? seconds * way_per_plan / way : seconds;
 }
 
 void BoneMotionLimits::moved(const Poses& from, double seconds)

@@ -24,6 +24,12 @@ public:
   /// Whether a bone's velocity jumps at the start of this motion, by more than 0.5 % of a voxel per step. That is about
   /// 1 % of the speed of sound, because waves cross about half a voxel in a safe step.
   bool jumps(const Poses& from, const Poses& to, double seconds, double step) const;
+  /// Longest plan [s] in a motion of this duration: bones move by at most half of a voxel, because the tissue beside
+  /// them may stiffen as they move.
+  double longest_plan(const Poses& from, const Poses& to, double seconds) const;
+  /// Whether a bone moves by more than 1.5 % of a voxel per step, about 3 % of the speed of sound, as a jaw does that
+  /// opens wide within 0.1 s.
+  bool fast(const Poses& from, const Poses& to, double seconds, double step) const;
   /// Records a motion that has started, with which jumps() compares the next motion.
   void moved(const Poses& from, double seconds);
   void archive(ByteArchive& archive) { archive(before_)(seconds_)(top_speed_); }
@@ -37,6 +43,9 @@ private:
     double fastest_way(const RigidTransform& from, const RigidTransform& to) const;  // of a corner of the box [m]
     void include(const std::array<double, 3>& p);
   };
+
+  /// Longest path of a bone, in shortest voxel edges.
+  double edges(const Poses& from, const Poses& to) const;
 
   double shortest_edge_;
   double top_speed_;  // [m/s]

@@ -17,14 +17,12 @@ namespace
 constexpr double cautious_share = 0.55;  // cautious steps: fraction of the critical step
 constexpr int cautious_plan = 8;         // number of steps in a cautious plan
 constexpr int vibration_plan = 32;       // largest number of steps in a plan while tissue vibrates
-// Longest plan while muscles respond or bones move, in which tissue stiffens [s].
-constexpr double plan_under_way = 4e-3;
 // The following constants define signs of fast change, and the number of cautious steps after each.
 constexpr double growth_between_plans = 1.1;  // ratio of covered squared frequencies of successive plans
 constexpr int steps_after_stiffening = 128;
 constexpr float activation_change_allowed = 0.3F;  // change of a muscle's activation within a plan
 constexpr int steps_after_a_switch = 48;
-// After a jump of a bone's velocity, whose waves are damped or spread within the time.
+// After a jump of a bone's velocity, or fast motion.
 constexpr int steps_after_a_jump = 1000;
 constexpr double time_after_a_jump = 0.03;  // [s]
 // Tissue that is much stiffer than at rest and changes from plan to plan vibrates; a contraction stiffens tissue
@@ -94,15 +92,15 @@ void TimeStepController::slow_down(double share)
 
 double TimeStepController::alarming() const { return growth_between_plans * covered(state_.measured) - not_measured(); }
 
-TimeStepController::Choice TimeStepController::choose(double remaining, double longest, bool under_way,
+TimeStepController::Choice TimeStepController::choose(double remaining, double longest, double longest_plan,
                                                       const BackendTraits& backend) const
 {
   const bool vibrates = state_.vibration_steps_left > 0;
   double dt = safe_step();
   int most_steps = static_cast<int>(std::clamp(backend.seconds_per_plan / dt, double(backend.fewest_steps_per_plan),
                                                double(backend.most_steps_per_plan)));
-  if (under_way)
-    most_steps = std::clamp(static_cast<int>(plan_under_way / dt), 1, most_steps);
+  if (longest_plan < most_steps * dt)
+    most_steps = std::max(1, static_cast<int>(longest_plan / dt));
   if (state_.cautious_steps_left > 0 || vibrates)
     dt = std::min(dt, critical_step(slow_share_ * cautious_share));
   const bool cautious = state_.cautious_steps_left > 0 || longest <= dt;

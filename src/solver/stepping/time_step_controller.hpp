@@ -54,16 +54,16 @@ public:
   double critical_step_at(double measured) const;
   /// What the backend must measure in a plan before to wait for what it measures in the plan itself; see StepPlan.
   double alarming() const;
-  /// The next plan of a motion that ends after `remaining` [s], with steps of at most `longest` [s]. `under_way`:
-  /// whether muscles respond or bones move.
-  Choice choose(double remaining, double longest, bool under_way, const BackendTraits& backend) const;
+  /// The next plan, of at most `longest_plan` [s], of a motion that ends after `remaining` [s], with steps of at most
+  /// `longest` [s].
+  Choice choose(double remaining, double longest, double longest_plan, const BackendTraits& backend) const;
 
   /// Records the most that a backend measured in the latest plan or in the plan before it.
   void observe(double measured, int steps);
   /// Whether a muscle is switched on or off between these activations. If so, the controller becomes cautious, because
   /// the muscle's voxels stiffen at once, and the voxels that it pulls stiffen a little later.
   bool muscles_switched(const std::vector<float>& from, const std::vector<float>& to);
-  /// Becomes cautious, because the velocity of a bone has jumped (BoneMotionLimits).
+  /// Becomes cautious, because the velocity of a bone has jumped or is high (BoneMotionLimits).
   void bone_jumped();
   /// Resets the controller after displacements were set from outside. `measured`: by the backend at these.
   void displacements_set(double measured);

@@ -23,8 +23,10 @@ namespace
 // Viscous stresses relax at the end of each plan, and whenever this fraction of the shortest time constant has passed.
 constexpr double relaxation_interval = 0.005;
 constexpr double fully_relaxed = 1e9;  // a time longer than any time constant [s]
-// Muscles that have yet to change their activations by more than this are under way.
+// Tissue stiffens fast while muscles have yet to change their activations by more than `response_left`. Plans are then
+// short, so that the time step can follow.
 constexpr float response_left = 0.1F;
+constexpr double plan_of_muscles = 4e-3;  // [s]
 // During dynamic relaxation, a window ends after this number of steps even if no motion is found.
 constexpr int steps_per_window = 2048;
 
@@ -162,7 +164,10 @@ void TimeStepper::advance(double seconds, const Controls& asked)
   {
     if (model_->time_step_estimate == TimeStepEstimate::assembled)
       renew_assembled_estimate(target);
-    const auto choice = controller_.choose(end - motion_.time, longest_step, under_way(target), traits_);
+    if (motion_.bones.fast(from.bone, target.bone, seconds, time_step()))
+      controller_.bone_jumped();
+    const auto choice =
+        controller_.choose(end - motion_.time, longest_step, longest_plan(target, end - motion_.time), traits_);
     const double reached = choice.reaches_end ? end : motion_.time + choice.steps * choice.dt;
     const Controls next = choice.reaches_end ? target : interpolate(from, target, (reached - begin) / seconds);
     const StepPlan plan = plan_to(next, choice);
@@ -179,12 +184,12 @@ void TimeStepper::advance(double seconds, const Controls& asked)
   motion_.controls = target;
 }
 
-bool TimeStepper::under_way(const Controls& target) const
+double TimeStepper::longest_plan(const Controls& target, double seconds) const
 {
   for (std::size_t m = 0; m < target.activation.size(); ++m)
     if (std::abs(target.activation[m] - motion_.activation[m]) > response_left)
-      return true;
-  return !same_poses(target.bone, motion_.controls.bone);
+      seconds = std::min(seconds, plan_of_muscles);
+  return std::min(seconds, motion_.bones.longest_plan(motion_.controls.bone, target.bone, seconds));
 }
 
 void TimeStepper::renew_assembled_estimate(const Controls& asked)

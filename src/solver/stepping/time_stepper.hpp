@@ -73,7 +73,8 @@ private:
 
   Motion at_rest() const;
   void renew_conditions();
-  bool under_way(const Controls& target) const;  ///< whether muscles respond or bones move
+  /// Longest duration of a plan of a motion that reaches `target` after `seconds` [s].
+  double longest_plan(const Controls& target, double seconds) const;
   void renew_assembled_estimate(const Controls& asked);
   StepPlan plan_to(const Controls& next, const TimeStepController::Choice& choice);
   void effects_switched(const std::vector<Effect>& effects);
