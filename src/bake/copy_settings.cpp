@@ -25,7 +25,8 @@ Material material_of(const Scene& scene, const SceneMaterial& material, const Lo
   const physics::MaterialDescription& description = physics::description_of(*law);
   std::array<double, physics::law_parameters_max> given{};
   for (int p = 0; p < description.count(); ++p)
-    given[p] = parameter(description.parameters[p].key);
+    if (!description.parameters[p].optional || material.parameters.count(description.parameters[p].key) > 0)
+      given[p] = parameter(description.parameters[p].key);
   const double poisson = parameter("poisson");
   Material out;
   out.name = material.name;

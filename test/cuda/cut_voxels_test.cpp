@@ -63,6 +63,7 @@ struct Swept
     for (const StripSlot& slot : slots)
       words.push_back({ slot.node, slot.voxel });
     std::vector<float4> palette(1), stabilisation(1), centres(1), corners(2);
+    std::vector<float> bounds(1);
     VoxelProperties voxel;
     const auto word = [](double x, double y, double z, double w) {
       return float4{ static_cast<float>(x), static_cast<float>(y), static_cast<float>(z), static_cast<float>(w) };
@@ -72,7 +73,8 @@ struct Swept
       d.voxel(e, voxel);
       const auto& form = voxel.stabilisation;
       palette.push_back(
-          word(voxel.mu * voxel.tissue_volume, voxel.kappa * voxel.tissue_volume, voxel.hourglass, voxel.stiffness));
+          word(voxel.mu * voxel.tissue_volume, voxel.kappa * voxel.tissue_volume, voxel.hourglass, voxel.stiffening));
+      bounds.push_back(static_cast<float>(voxel.stiffness));
       stabilisation.push_back(word(form.bending, form.coupling, form.torsion, form.warping));
       centres.push_back(word(voxel.centre.x, voxel.centre.y, voxel.centre.z, 0));
       const auto& factor = d.corner_stiffness[e];
@@ -92,6 +94,7 @@ struct Swept
     }
     g.slots = words.data();
     g.palette = palette.data();
+    g.stiffness_bounds = bounds.data();
     g.stabilisation = d.assumed_strain ? stabilisation.data() : nullptr;
     g.centres = centres.data();
     g.corner_stiffness = corners.data();

@@ -109,13 +109,15 @@ void compare(int turns)
     return float4{ static_cast<float>(x), static_cast<float>(y), static_cast<float>(z), static_cast<float>(w) };
   };
   std::vector<float4> palette(1), centres(1), corners(2);
+  std::vector<float> bounds(1);
   std::vector<uint2> properties;
   VoxelProperties voxel;
   for (std::size_t e = 0; e < model.voxels.size(); ++e)
   {
     d.voxel(e, voxel);
     palette.push_back(
-        word(voxel.mu * voxel.tissue_volume, voxel.kappa * voxel.tissue_volume, voxel.hourglass, voxel.stiffness));
+        word(voxel.mu * voxel.tissue_volume, voxel.kappa * voxel.tissue_volume, voxel.hourglass, voxel.stiffening));
+    bounds.push_back(static_cast<float>(voxel.stiffness));
     centres.push_back(word(voxel.centre.x, voxel.centre.y, voxel.centre.z, 0));
     const auto& factor = d.corner_stiffness[e];
     corners.push_back({ factor[0], factor[1], factor[2], factor[3] });
@@ -156,6 +158,7 @@ void compare(int turns)
   }
   g.mobility = mobility.data();
   g.palette = palette.data();
+  g.stiffness_bounds = bounds.data();
   g.centres = centres.data();
   g.corner_stiffness = corners.data();
   g.fields = &field;
