@@ -1,5 +1,5 @@
 // config/head.yaml can be baked for random people, and the parts of their heads fit together. FRONTALIS_HEADS: number
-// of heads, 5 by default; FRONTALIS_FIRST_HEAD: number of the first of them that is made, 0 by default.
+// of heads, 3 by default; FRONTALIS_FIRST_HEAD: number of the first of them that is made, 0 by default.
 
 #include "bake/mesh/surface.hpp"
 #include "bake/shapes/head/head.hpp"
@@ -134,7 +134,7 @@ int setting(const char* name, int usual)
   const char* wanted = std::getenv(name);
   return wanted != nullptr ? std::atoi(wanted) : usual;
 }
-int number_of_heads() { return setting("FRONTALIS_HEADS", 5); }
+int number_of_heads() { return setting("FRONTALIS_HEADS", 3); }
 int first_head() { return setting("FRONTALIS_FIRST_HEAD", 0); }
 
 std::shared_ptr<const HeadTemplate> shipped()
