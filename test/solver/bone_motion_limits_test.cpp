@@ -78,8 +78,8 @@ TEST(BoneMotionLimits, limit_the_length_of_a_plan)
 {
   const BoneMotionLimits limits(held_block(), 1);
   EXPECT_NEAR(limits.longest_plan(moved(0), moved(2 * edge), 1), 0.25, 1e-12) << "half a voxel of two";
-  EXPECT_EQ(limits.longest_plan(moved(0), moved(0.4 * edge), 1), 1);
-  EXPECT_EQ(limits.longest_plan(moved(speed), moved(speed), 1), 1);
+  EXPECT_TRUE(std::isinf(limits.longest_plan(moved(0), moved(0.4 * edge), 1)));
+  EXPECT_TRUE(std::isinf(limits.longest_plan(moved(speed), moved(speed), 1)));
 }
 
 TEST(BoneMotionLimits, notice_fast_bones)

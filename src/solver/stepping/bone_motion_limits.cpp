@@ -89,7 +89,7 @@ bool BoneMotionLimits::fast(const Poses& from, const Poses& to, double seconds, 
 double BoneMotionLimits::longest_plan(const Poses& from, const Poses& to, double seconds) const
 {
   const double way = edges(from, to);
-  return way > way_per_plan ? seconds * way_per_plan / way : seconds;
+  return way > way_per_plan ? seconds * way_per_plan / way : std::numeric_limits<double>::infinity();
 }
 
 void BoneMotionLimits::moved(const Poses& from, double seconds)

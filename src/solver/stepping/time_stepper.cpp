@@ -23,8 +23,7 @@ namespace
 // Viscous stresses relax at the end of each plan, and whenever this fraction of the shortest time constant has passed.
 constexpr double relaxation_interval = 0.005;
 constexpr double fully_relaxed = 1e9;  // a time longer than any time constant [s]
-// Tissue stiffens fast while muscles have yet to change their activations by more than `response_left`. Plans are then
-// short, so that the time step can follow.
+// Plans are short while muscles have more than this part of their response left, because tissue then stiffens fast.
 constexpr float response_left = 0.1F;
 constexpr double plan_of_muscles = 4e-3;  // [s]
 // During dynamic relaxation, a window ends after this number of steps even if no motion is found.
@@ -186,10 +185,11 @@ void TimeStepper::advance(double seconds, const Controls& asked)
 
 double TimeStepper::longest_plan(const Controls& target, double seconds) const
 {
+  double longest = motion_.bones.longest_plan(motion_.controls.bone, target.bone, seconds);
   for (std::size_t m = 0; m < target.activation.size(); ++m)
     if (std::abs(target.activation[m] - motion_.activation[m]) > response_left)
-      seconds = std::min(seconds, plan_of_muscles);
-  return std::min(seconds, motion_.bones.longest_plan(motion_.controls.bone, target.bone, seconds));
+      longest = std::min(longest, plan_of_muscles);
+  return longest;
 }
 
 void TimeStepper::renew_assembled_estimate(const Controls& asked)

@@ -73,7 +73,7 @@ private:
 
   Motion at_rest() const;
   void renew_conditions();
-  /// Longest duration of a plan of a motion that reaches `target` after `seconds` [s].
+  /// Longest duration of a plan [s] in a motion that reaches `target` after `seconds`; infinite without a limit.
   double longest_plan(const Controls& target, double seconds) const;
   void renew_assembled_estimate(const Controls& asked);
   StepPlan plan_to(const Controls& next, const TimeStepController::Choice& choice);
