@@ -35,6 +35,7 @@ Model cut_layers(HourglassControl hourglass)
   s.spacing = { { 1e-3, 1.2e-3, 0.9e-3 } };
   s.keep = [](int i, int j, int) { return i < 12 || i > 15 || j > 4; };
   Model model = test::block_model(s);
+  model.materials[0].parameters[physics::slot_of(1)] = 0.3;  // stiffening
   model.hourglass = hourglass;
   std::mt19937 random(5);
   std::uniform_real_distribution<float> value(-0.9F, 0.9F);

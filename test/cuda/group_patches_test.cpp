@@ -56,6 +56,7 @@ Model whole_model()
   s.voxels = { { 6, 4, 5 } };
   s.poisson = 0.45;
   Model model = test::block_model(s);
+  model.materials[0].parameters[physics::slot_of(1)] = 0.3;  // stiffening
   test::part(model, 3, [](int i) { return i >= 3; });
   test::join(model, [](int i) { return i == 3 || i == 6; });
   const auto level = [](const std::array<double, 3>& p) { return 0.96 * p[2] + 0.28 * p[0] - 0.4 * edge; };

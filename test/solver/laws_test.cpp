@@ -81,6 +81,38 @@ TEST_P(Laws, ForcesAreTheGradientOfTheEnergy)
 }
 
 // If a body with muscle everywhere is rotated as a whole, its forces rotate with it.
+// The energy of a mixture of neo-Hookean materials is the sum of their energies, also if one stiffens.
+TEST(NeoHookeanMixture, HasTheEnergyOfItsParts)
+{
+  std::array<double, 3> energy{};
+  for (std::size_t part = 0; part < energy.size(); ++part)
+  {
+    Model model = test::block_model({});
+    model.materials.push_back(model.materials[0]);
+    for (double& parameter : model.materials[1].parameters)
+      parameter *= 3;
+    model.materials[1].parameters[physics::slot_of(1)] = 1;
+    const float share = part == 0 ? 0.25F : part == 1 ? 0.0F : 1.0F;
+    model.mixture_begin.assign(1, 0);
+    model.mixture_material.clear();
+    model.mixture_proportion.clear();
+    for (std::size_t e = 0; e < model.voxels.size(); ++e)
+    {
+      model.mixture_material.insert(model.mixture_material.end(), { 0, 1 });
+      model.mixture_proportion.insert(model.mixture_proportion.end(), { 1 - share, share });
+      model.mixture_begin.push_back(static_cast<std::int32_t>(model.mixture_material.size()));
+    }
+    const auto solver = make_solver(std::make_shared<const Model>(model), { "reference", 1 });
+    Vectors u(model.nodes.size());
+    for (std::size_t n = 0; n < u.size(); ++n)
+      u[n][0] = 1e-3 * model.nodes[n][1];  // a simple shear of one edge per edge
+    solver->set_displacements(u);
+    energy[part] = solver->monitor().internal;
+  }
+  EXPECT_NEAR(energy[2] / energy[1], 3 * 1.5, 1e-6) << "the invariant has grown by 1";
+  EXPECT_NEAR(energy[0] / energy[1], 0.75 + 0.25 * 4.5, 1e-6);
+}
+
 TEST_P(Laws, ForcesTurnWithTheBody)
 {
   const double a = 0.9, c = std::cos(a), s = std::sin(a);

@@ -146,6 +146,35 @@ TEST(TimeStepper, plans_follow_one_another_from_the_begin_to_the_end)
   EXPECT_GT(activation[0], 0.24f);
 }
 
+// In heavy tissue steps are so long that 32 of them would last longer than muscles and bones allow.
+TEST(TimeStepper, makes_short_plans_while_muscles_respond_and_bones_move)
+{
+  Model model = model_of();
+  model.materials[0].density *= 200;
+  model.muscles[0].rise_time = 0.02;
+  test::hold_plane(model, 2, 0, model.size[2]);
+  Stepped muscle(model);
+  ASSERT_GT(32 * muscle.solver.time_step(), 8e-3);
+  for (int part = 0; part < 2; ++part)
+    muscle.solver.advance(0.1, { { 1.0f }, { RigidTransform() } });
+  double longest = 0;
+  for (const StepPlan& plan : muscle.script.plans)
+    if (plan.begin.activation[0] < 0.9f)
+      EXPECT_LE(plan.steps * plan.dt, 4e-3 * 1.0001);
+    else
+      longest = std::max(longest, plan.steps * plan.dt);
+  EXPECT_GT(longest, 8e-3) << "after the muscle has responded";
+
+  Stepped bone(model);
+  const double way = 16 * model.spacing[0], seconds = 0.08;  // longer than caution after a jump
+  bone.solver.advance(seconds, { { 0.0f }, { rigid_motion({ { 0, 0, 0 } }, { { way, 0, 0 } }) } });
+  for (const StepPlan& plan : bone.script.plans)
+  {
+    EXPECT_LE(plan.steps * plan.dt, seconds / 32 * 1.0001) << "half a voxel";
+    EXPECT_TRUE(plan.bound_every_step) << "the bone is fast";
+  }
+}
+
 TEST(TimeStepper, refuses_bad_targets_and_stops_where_numbers_are_not_finite)
 {
   Stepped s;

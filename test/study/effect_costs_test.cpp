@@ -139,7 +139,10 @@ TEST(EffectCosts, APlainModelHasElasticityAlone)
   const Model plain = plain_model(test::scene_of(test::everything));
   EXPECT_EQ(names_of(effects_of(plain)), "elasticity");
   for (const Material& material : plain.materials)
+  {
     EXPECT_EQ(material.law, Law::neo_hookean);
+    EXPECT_EQ(material.parameters[physics::slot_of(1)], 0) << "no stiffening";
+  }
 }
 
 TEST(EffectCosts, OneMuscleIsTimedAgainstAll)

@@ -29,7 +29,7 @@ std::string words_for(Instability instability);
 
 struct GuardSettings
 {
-  int interval = 0;     ///< steps between two checks; 0: Solver::steps_per_check
+  int interval = 0;     ///< most steps between two checks; 0: Solver::steps_per_check
   double slower = 0.5;  ///< factor on the time step after a finding, applied once per try
   int recovery = 4;     ///< number of checks without a finding before the full time step is used again
   int tries = 3;        ///< failed tries in a row after which the motion is stopped
@@ -72,7 +72,8 @@ public:
   InstabilityReport report;
 };
 
-/// Watches a solver's motion. At a fixed interval of steps it looks for signs of instability. If there are none it
+/// Watches a solver's motion. At a fixed interval of steps, and at the end of a part of a motion in which
+/// the time step has fallen to half, it looks for signs of instability. If there are none it
 /// keeps a snapshot; otherwise it goes back to the last good snapshot and takes shorter steps for a while.
 ///
 /// Energy is judged by a bound if there is no ledger. Let E be the kinetic, internal and hourglass energy at the last

@@ -27,7 +27,7 @@ constexpr double step_share_allowed = 1.1;
 constexpr double imbalance_allowed = 0.2;
 // A voxel is reported as the origin of the instability if its J is below `crushed`, or if it is the stiffest one and
 // the critical step has fallen below the fraction `stiffened` of the critical step of the last good state. Such a fall
-// of the time step is a sign of an instability, so that the next check is then due at once.
+// of the time step is a sign of an instability, so that a check is due at the end of that part.
 constexpr double crushed = 0.2;
 constexpr double stiffened = 0.5;
 

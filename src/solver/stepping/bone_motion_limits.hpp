@@ -8,7 +8,7 @@
 namespace frontalis
 {
 
-/// Limits of the speed of bones, and of its jumps.
+/// Limits of the speed of bones and of plans, and signs of jumps and of fast motion.
 class BoneMotionLimits
 {
 public:
@@ -25,7 +25,7 @@ public:
   /// 1 % of the speed of sound, because waves cross about half a voxel in a safe step.
   bool jumps(const Poses& from, const Poses& to, double seconds, double step) const;
   /// Longest plan [s] in a motion of this duration: bones move by at most half of a voxel, because the tissue beside
-  /// them may stiffen as they move. Infinite if the whole motion is as short.
+  /// them may stiffen as they move. Infinite if the whole motion is no longer than that.
   double longest_plan(const Poses& from, const Poses& to, double seconds) const;
   /// Whether a bone moves by more than 1.5 % of a voxel per step, about 3 % of the speed of sound, as a jaw does that
   /// opens wide within 0.1 s.

@@ -22,7 +22,7 @@ constexpr double growth_between_plans = 1.1;  // ratio of covered squared freque
 constexpr int steps_after_stiffening = 128;
 constexpr float activation_change_allowed = 0.3F;  // change of a muscle's activation within a plan
 constexpr int steps_after_a_switch = 48;
-// After a jump of a bone's velocity, or fast motion.
+// After a jump of a bone's velocity, or fast motion: the shorter of the two.
 constexpr int steps_after_a_jump = 1000;
 constexpr double time_after_a_jump = 0.03;  // [s]
 // Tissue that is much stiffer than at rest and changes from plan to plan vibrates; a contraction stiffens tissue

@@ -7,8 +7,8 @@ namespace frontalis
 {
 
 /// Chooses the length of steps, and the number of steps until the backend measures again, from what a backend measures,
-/// the activations, and jumps of bones. A backend measures the bound of the squared frequency at nodes or, if the
-/// highest frequency of the assembled model sets the time step, the growth of this bound since rest [1/s2].
+/// the activations, and jumps and speeds of bones. A backend measures the bound of the squared frequency at nodes or,
+/// if the highest frequency of the assembled model sets the time step, the growth of this bound since rest [1/s2].
 ///
 /// Just below the critical step, tissue that stiffens as it vibrates gains or loses energy in every cycle. The
 /// controller is therefore cautious for some steps after signs of fast change: steps are shorter, plans have few steps,

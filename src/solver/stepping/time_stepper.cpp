@@ -23,7 +23,7 @@ namespace
 // Viscous stresses relax at the end of each plan, and whenever this fraction of the shortest time constant has passed.
 constexpr double relaxation_interval = 0.005;
 constexpr double fully_relaxed = 1e9;  // a time longer than any time constant [s]
-// Plans are short while muscles have more than this part of their response left, because tissue then stiffens fast.
+// Plans are short while a muscle's activation is farther than this from its target, because tissue then stiffens fast.
 constexpr float response_left = 0.1F;
 constexpr double plan_of_muscles = 4e-3;  // [s]
 // During dynamic relaxation, a window ends after this number of steps even if no motion is found.

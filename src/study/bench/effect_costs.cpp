@@ -109,8 +109,8 @@ Model plain_model(const Model& model)
   for (Material& material : plain.materials)
   {
     // The bulk modulus is kept. Poisson's ratio becomes 0.49, which does not affect the cost.
-    if (material.law != Law::neo_hookean)
-      material.parameters[0] = material.parameters[1] / 50;
+    const double bulk = material.parameters[physics::bulk_modulus_slot];
+    material.parameters = { { material.law == Law::neo_hookean ? material.parameters[0] : bulk / 50, bulk } };
     material.law = Law::neo_hookean;
   }
   plain.hourglass = HourglassControl::scalar;

@@ -35,11 +35,13 @@ FRONTALIS_LAW T shear_modulus(const NeoHookean<T>& material)
   return material.mu;
 }
 
-/// Shear modulus [Pa] that relates stress to strain at an isochoric first invariant g I1: 2 d psi / d x.
+/// Shear modulus [Pa] that relates stress to strain at an isochoric first invariant g I1: 2 d psi / d x. The invariant
+/// is 3 or more but in crushed voxels, where g is continued: there x counts as 0.
 template <class T>
 FRONTALIS_LAW T secant_modulus(const NeoHookean<T>& material, const T& invariant)
 {
-  return material.mu + material.mu * material.stiffening * (invariant - Number<T>::of(3));
+  using N = Number<T>;
+  return material.mu + material.mu * material.stiffening * N::max(invariant - N::of(3), N::of(0));
 }
 
 /// First Piola-Kirchhoff stress [Pa] as P = on_gradient F + on_cofactor cof F.
@@ -73,7 +75,8 @@ FRONTALIS_LAW T energy(const NeoHookean<T>& material, const Kinematics<T>& k)
 {
   using N = Number<T>;
   const T x = isochoric_scale(k.J).value * k.I1 - N::of(3);
-  return N::of(0.5) * material.mu * x * (N::of(1) + N::of(0.5) * material.stiffening * x) +
+  const T stretched = N::max(x, N::of(0));
+  return N::of(0.5) * material.mu * (x + N::of(0.5) * material.stiffening * stretched * stretched) +
          N::of(0.5) * material.kappa * k.dilatation * k.dilatation;
 }
 
