@@ -107,6 +107,15 @@ TEST(TimeStepController, plans_are_no_longer_than_allowed)
     EXPECT_EQ(controller.choose(forever, unlimited, longest, traits()).steps, steps);
 }
 
+TEST(TimeStepController, cautious_plans_are_no_longer_than_allowed_either)
+{
+  TimeStepController controller(rest, by_bound, 0.9, 0);
+  controller.bone_jumped();
+  const double dt = choose(controller).dt;
+  for (const auto& [longest, steps] : { std::pair<double, int>{ 1, 8 }, { 2.5 * dt, 2 }, { 0.1 * dt, 1 } })
+    EXPECT_EQ(controller.choose(forever, unlimited, longest, traits()).steps, steps);
+}
+
 TEST(TimeStepController, is_cautious_for_a_time_after_a_jump_of_a_bone)
 {
   constexpr double slow = 4e4;  // its critical step is 10 ms

@@ -105,7 +105,7 @@ TimeStepController::Choice TimeStepController::choose(double remaining, double l
     dt = std::min(dt, critical_step(slow_share_ * cautious_share));
   const bool cautious = state_.cautious_steps_left > 0 || longest <= dt;
   if (cautious)
-    most_steps = cautious_plan;
+    most_steps = std::max(1, static_cast<int>(std::min<double>(longest_plan / dt, cautious_plan)));
   else if (vibrates)
     most_steps = std::min(vibration_plan, most_steps);
   // Without the tolerance, a rounding error could add a step.
