@@ -53,6 +53,9 @@ CudaSolver::CudaSolver(const BackendInput& input, const std::string& remark)
     device_.viscosity().keep_account();
   }
   rest();
+  // takes as long as some hundred steps, which should not be the first ones
+  if (model_->time_step_estimate == TimeStepEstimate::assembled)
+    prepare_search();
 }
 
 CudaSolver::~CudaSolver()

@@ -55,7 +55,9 @@ private:
   StepArguments arguments(double dt, bool idle_parts = false) const;
   void kick(StepArguments& g, double seconds) const;
   void stage(const StepPlan& plan, const std::vector<float>& relaxation, PlanSlot& slot, StepArguments& g);
-  void step(StepArguments& g, int begin, int end);
+  void begin_steps(StepArguments& g, int begin, int end);
+  void step(const StepArguments& g);
+  bool adds_stress() const;
   bool stays() const;
   void do_steps(const StepPlan& plan, StepArguments& g, int begin, int end);
   void rest();
@@ -94,7 +96,7 @@ private:
   StepLaunch launch_{};
   std::unique_ptr<DeviceAccount> account_;
   std::unique_ptr<DeviceMonitor> monitor_;                  // made on first use
-  std::unique_ptr<FrequencySearch, SearchDeleter> search_;  // made on first use
+  std::unique_ptr<FrequencySearch, SearchDeleter> search_;  // made on first use at the latest
 };
 
 }  // namespace cuda

@@ -92,15 +92,23 @@ void CudaSolver::stage(const StepPlan& plan, const std::vector<float>& relaxatio
   g.relaxation = relaxation.empty() ? nullptr : reinterpret_cast<const float*>(controls + relaxation_at);
 }
 
-void CudaSolver::step(StepArguments& g, int begin, int end)
+// Begins a launch of steps. In strips, the first kernel of a step finds added stress.
+void CudaSolver::begin_steps(StepArguments& g, int begin, int end)
 {
   g.step_begin = begin;
   g.step_end = end;
   g.first = present_;
   g.steps_before = steps_before_;
+  if (adds_stress())
+    require(launch_added_stress(g, stream_), "finding added stress");
+}
+
+void CudaSolver::step(const StepArguments& g)
+{
   require(launch_steps(g, launch_, stream_), "launching steps");
-  steps_before_ += static_cast<std::uint32_t>(end - begin);
-  present_ = (present_ + end - begin) & 1;
+  const int steps = g.step_end - g.step_begin;
+  steps_before_ += static_cast<std::uint32_t>(steps);
+  present_ = (present_ + steps) & 1;
 }
 
 // Makes all steps in one launch if the host has nothing to do between them, else in one launch per step. The forces of
@@ -113,19 +121,29 @@ void CudaSolver::do_steps(const StepPlan& plan, StepArguments& g, int begin, int
     if (!launch_.patches || part->has_kernels(stays()))
       pushing.push_back(part);
   if (stays() && pushing.empty())
-    return step(g, begin, end);
+  {
+    begin_steps(g, begin, end);
+    return step(g);
+  }
+  g.contact.blocks_beside = 0;
+  for (const DevicePart* const part : pushing)
+    g.contact.blocks_beside += adds_stress() ? part->blocks_beside() : 0;
   for (int s = begin; s < end; ++s)
   {
     device_.loads().update(u_[present_].data(), stream_);
-    g.first = present_;
     if (account_)
+    {
+      g.first = present_;
       account_->before_step(g, s, stream_);
+    }
+    begin_steps(g, s, s + 1);
     for (const DevicePart* const part : pushing)
     {
-      part->find_pushes(g, s, stream_);
+      if (g.contact.blocks_beside == 0 || part->blocks_beside() == 0)
+        part->find_pushes(g, s, stream_);
       part->push(g, g.gain / g.keep, g.v, stream_);
     }
-    step(g, s, s + 1);
+    step(g);
     if (!account_)
       continue;
     for (const DevicePart* const part : pushing)
@@ -137,6 +155,12 @@ void CudaSolver::do_steps(const StepPlan& plan, StepArguments& g, int begin, int
     for (DevicePart* const part : running)
       part->follow(plan.constraint_step(s));
   }
+}
+
+// Whether strips have a kernel for the stress of fibres and of laws other than neo-Hookean.
+bool CudaSolver::adds_stress() const
+{
+  return !launch_.patches && (launch_.effects & Effects::added) == Effects::added;
 }
 
 // Whether patches can make many steps per launch.
@@ -225,7 +249,8 @@ void CudaSolver::queue_forces(float4* at, const float* activation, float4* out, 
   const StepLaunch launch = launch_;
   if (springs)
     launch_.effects = device_.launch_with_parts().effects;
-  step(g, 0, 1);
+  begin_steps(g, 0, 1);
+  step(g);
   launch_ = launch;
   present_ = present;
   float* const none[3] = { nullptr, nullptr, nullptr };

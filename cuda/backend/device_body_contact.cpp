@@ -158,6 +158,7 @@ void DeviceBodyContact::describe(StepArguments& g) const
                 arms_.data(),
                 samples_.data(),
                 clearances_.data(),
+                0,
                 false };
 }
 
@@ -220,6 +221,11 @@ void DeviceBodyContact::reset()
   motions_.clear();
   reactions_.clear();
   host_.reset();
+}
+
+std::uint32_t DeviceBodyContact::blocks_beside() const
+{
+  return host_pushed_.empty() ? find_pushes_blocks(static_cast<std::uint32_t>(point_.size())) : 0;
 }
 
 void DeviceBodyContact::find_pushes(const StepArguments& g, int step, cudaStream_t stream) const

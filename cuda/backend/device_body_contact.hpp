@@ -28,6 +28,7 @@ public:
   void list_arrays(ArrayList& list) override;
   void run(EffectSet running) override;
   void reset() override;
+  std::uint32_t blocks_beside() const override;
   void find_pushes(const StepArguments& g, int step, cudaStream_t stream) const override;
   void push(const StepArguments& g, float factor, float* const (&v)[3], cudaStream_t stream) const override
   {

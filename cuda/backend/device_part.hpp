@@ -45,6 +45,8 @@ public:
   /// whether patches could make many steps per launch otherwise.
   virtual bool has_kernels(bool /*stays*/) const { return false; }
   // Functions for strips:
+  /// Number of blocks of the kernel that finds added stress which can do what find_pushes() does; 0: they cannot.
+  virtual std::uint32_t blocks_beside() const { return 0; }
   /// Finds the forces on points at the start of a step.
   virtual void find_pushes(const StepArguments& g, int step, cudaStream_t stream) const = 0;
   /// Passes the forces of find_pushes() on to nodes, as launch_push_nodes() does.

@@ -1,4 +1,5 @@
 #include "cuda/kernels/attached_group.cuh"
+#include "cuda/kernels/launch_after.cuh"
 
 namespace frontalis
 {
@@ -9,6 +10,8 @@ constexpr int block = 128;
 
 __global__ void __launch_bounds__(block) follow_masters(const __grid_constant__ StepArguments g)
 {
+  let_next_kernel_start();
+  wait_for_kernel_before();
   const std::uint32_t index = (blockIdx.x * block + threadIdx.x) / group_lanes;
   if (index < g.attached.count)
     follow_master<group_lanes>(g, index, g.step_begin, g.u[1 - g.first], g.v);
@@ -19,9 +22,7 @@ __global__ void __launch_bounds__(block) follow_masters(const __grid_constant__ 
 cudaError_t launch_attached(const StepArguments& arguments, cudaStream_t stream)
 {
   const std::uint32_t blocks = (arguments.attached.count * cuda::group_lanes + cuda::block - 1) / cuda::block;
-  if (blocks > 0)
-    cuda::follow_masters<<<blocks, cuda::block, 0, stream>>>(arguments);
-  return cudaGetLastError();
+  return blocks > 0 ? cuda::launch_after(cuda::follow_masters, blocks, cuda::block, stream, arguments) : cudaSuccess;
 }
 
 }  // namespace frontalis

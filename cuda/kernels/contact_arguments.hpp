@@ -81,6 +81,9 @@ struct ContactArguments
   float4* samples;     ///< see sample_words
   float4* clearances;  ///< position, and distance [m] within which a point need not be evaluated again
 
+  /// In strips: number of blocks of find_added_stress() that find the forces on points; 0: a kernel of their own does.
+  std::uint32_t blocks_beside;
+
   /// Whether the forces are those of points that all touch and stick, as in ContactStiffness::add_forces().
   bool spring;
 };

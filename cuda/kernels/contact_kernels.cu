@@ -1,6 +1,7 @@
 #include "cuda/kernels/contact_kernels.hpp"
 
 #include "cuda/kernels/contact_points.cuh"
+#include "cuda/kernels/launch_after.cuh"
 #include "cuda/kernels/pushed_bodies.cuh"
 
 namespace frontalis
@@ -23,18 +24,15 @@ template <bool any_pushed>
 __global__ void __launch_bounds__(block)
     find_pushes(const __grid_constant__ StepArguments g, const PushedBodies pushed, int step)
 {
+  let_next_kernel_start();
   const std::uint32_t p = blockIdx.x * block + threadIdx.x;
   physics::Vec3<float> force{ 0, 0, 0 };
   std::int32_t body = -1;
   if (p < g.contact.point_count)
   {
     const ContactPoint point = g.contact.points[p];
-    const BoundPoints& bound = g.contact.bound;
-    const physics::Vec3<float> moved =
-        bound_displacement(bound.coordinates[p], bound.nodes[2 * p], bound.nodes[2 * p + 1], g.u[g.first]);
-    force = find_push(g, point, { p, step, true, moved }).force;
     body = point.body;
-    bound.pushes[p] = make_float4(force.x, force.y, force.z, 0);
+    force = put_push(g, p, point, step, wait_for_kernel_before);
   }
   if (any_pushed)
     put_reactions<block>(pushed, blockIdx.x, body, force);
@@ -54,8 +52,7 @@ cudaError_t launch_find_pushes(const StepArguments& arguments, const PushedBodie
   if (moves)
     cuda::move_bodies<<<pushed.count, cuda::warp, 0, stream>>>(pushed, step, arguments.dt_exact, contact.body_count);
   const auto kernel = moves ? cuda::find_pushes<true> : cuda::find_pushes<false>;
-  kernel<<<blocks, cuda::block, 0, stream>>>(arguments, pushed, step);
-  return cudaGetLastError();
+  return cuda::launch_after(kernel, blocks, cuda::block, stream, arguments, pushed, step);
 }
 
 }  // namespace frontalis

@@ -149,5 +149,21 @@ __device__ __forceinline__ Push find_push(const StepArguments& g, const ContactP
   return { { 0, 0, 0 }, hold.touching == int(Touching::no) && grip.normal == 0 ? distance : 0 };
 }
 
+/// Finds the force on a point in strips, and stores it for push_nodes(). Calls wait(), which waits for the preceding
+/// kernel, once constant data have been loaded.
+template <class Wait>
+__device__ __forceinline__ physics::Vec3<float> put_push(const StepArguments& g, std::uint32_t index,
+                                                         const ContactPoint& point, int step, const Wait& wait)
+{
+  const BoundPoints& bound = g.contact.bound;
+  const float4 coordinates = bound.coordinates[index];
+  const uint4 low = bound.nodes[2 * index], high = bound.nodes[2 * index + 1];
+  wait();
+  const physics::Vec3<float> moved = bound_displacement(coordinates, low, high, g.u[g.first]);
+  const physics::Vec3<float> force = find_push(g, point, { index, step, true, moved }).force;
+  bound.pushes[index] = make_float4(force.x, force.y, force.z, 0);
+  return force;
+}
+
 }  // namespace cuda
 }  // namespace frontalis

@@ -1,3 +1,4 @@
+#include "cuda/kernels/launch_after.cuh"
 #include "cuda/kernels/node_tasks.cuh"
 
 namespace frontalis
@@ -13,14 +14,16 @@ constexpr int block = 128;
 template <int With>
 __global__ void __launch_bounds__(block, 4) run_tasks(const __grid_constant__ StepArguments g)
 {
+  let_next_kernel_start();
   constexpr Effects effects = static_cast<Effects>(With);
   const std::uint32_t t = blockIdx.x * block + threadIdx.x;
   if (t >= g.task_count)
     return;
   const float4* const u = g.u[g.first];
   float4* const next = g.u[1 - g.first];
-  // All loads are issued at once, because memory latency dominates here.
   const NodeTask task = g.tasks[t];
+  wait_for_kernel_before();
+  // All loads are issued at once, because memory latency dominates here.
   const std::int32_t sliding = task.of[node_sliding];
   const bool slides = has<effects, Effects::sliding> && has_only(task, node_sliding);
   SlidingFetch fetch;
@@ -53,8 +56,8 @@ cudaError_t launch_tasks(const StepArguments& arguments, Effects effects, cudaSt
   const auto kernel = rubs     ? cuda::run_tasks<int(of_nodes)>
                       : slides ? cuda::run_tasks<sliding>
                                : cuda::run_tasks<plain>;
-  kernel<<<(arguments.task_count + cuda::block - 1) / cuda::block, cuda::block, 0, stream>>>(arguments);
-  return cudaGetLastError();
+  return cuda::launch_after(kernel, (arguments.task_count + cuda::block - 1) / cuda::block, cuda::block, stream,
+                            arguments);
 }
 
 }  // namespace frontalis

@@ -1,5 +1,6 @@
 #include "cuda/kernels/shell_kernels.hpp"
 
+#include "cuda/kernels/launch_after.cuh"
 #include "cuda/kernels/shell_triangles.cuh"
 
 namespace frontalis
@@ -13,16 +14,21 @@ constexpr int block = 128;
 
 __global__ void __launch_bounds__(block) place_vertices(const BoundPoints points, const float4* u, float4* moved)
 {
+  let_next_kernel_start();
   const std::uint32_t v = blockIdx.x * block + threadIdx.x;
   if (v >= points.point_count)
     return;
-  const physics::Vec3<float> at =
-      bound_displacement(points.coordinates[v], points.nodes[2 * v], points.nodes[2 * v + 1], u);
+  const float4 coordinates = points.coordinates[v];
+  const uint4 low = points.nodes[2 * v], high = points.nodes[2 * v + 1];
+  wait_for_kernel_before();
+  const physics::Vec3<float> at = bound_displacement(coordinates, low, high, u);
   moved[v] = make_float4(at.x, at.y, at.z, 0);
 }
 
 __global__ void __launch_bounds__(block) find_forces(const ShellTriangles triangles, const float4* moved, float* forces)
 {
+  let_next_kernel_start();
+  wait_for_kernel_before();
   const std::uint32_t t = blockIdx.x * block + threadIdx.x;
   if (t < triangles.count)
     put_shell_forces(triangles, t, moved, forces);
@@ -31,10 +37,12 @@ __global__ void __launch_bounds__(block) find_forces(const ShellTriangles triang
 __global__ void __launch_bounds__(block)
     sum_forces(const ShellSums of, const BoundPoints points, std::uint32_t triangles, const float* forces)
 {
+  let_next_kernel_start();
   const std::uint32_t v = blockIdx.x * block + threadIdx.x;
   if (v >= points.point_count)
     return;
   const uint2 sum = of.sums[v];
+  wait_for_kernel_before();
   physics::Vec3<float> force{ 0, 0, 0 };
   for (std::uint32_t k = sum.x; k < sum.x + sum.y; ++k)
     force = force + shell_force(forces + of.terms[k], triangles);
@@ -53,10 +61,13 @@ cudaError_t launch_shell_forces(const ShellTriangles& triangles, const ShellSums
                                 const float4* u, float4* moved, float* forces, cudaStream_t stream)
 {
   const int vertices = cuda::blocks(points.point_count);
-  cuda::place_vertices<<<vertices, cuda::block, 0, stream>>>(points, u, moved);
-  cuda::find_forces<<<cuda::blocks(triangles.count), cuda::block, 0, stream>>>(triangles, moved, forces);
-  cuda::sum_forces<<<vertices, cuda::block, 0, stream>>>(sums, points, triangles.count, forces);
-  return cudaGetLastError();
+  cudaError_t status = cuda::launch_after(cuda::place_vertices, vertices, cuda::block, stream, points, u, moved);
+  if (status == cudaSuccess)
+    status = cuda::launch_after(cuda::find_forces, cuda::blocks(triangles.count), cuda::block, stream, triangles, moved,
+                                forces);
+  if (status == cudaSuccess)
+    status = cuda::launch_after(cuda::sum_forces, vertices, cuda::block, stream, sums, points, triangles.count, forces);
+  return status;
 }
 
 }  // namespace frontalis

@@ -1,3 +1,4 @@
+#include "cuda/kernels/launch_after.cuh"
 #include "cuda/kernels/strip_sweep.cuh"
 
 #include <utility>
@@ -13,6 +14,7 @@ template <int Rows, bool WithBound, int Set>
 __global__ void __launch_bounds__(step_block, strip_blocks(static_cast<Effects>(Set)))
     step_kernel(const __grid_constant__ StepArguments g)
 {
+  let_next_kernel_start();
   constexpr Effects With = static_cast<Effects>(Set);
   __shared__ float2 activations[has<With, Effects::fibres> ? most_muscles : 1];
   const std::uint32_t lane = threadIdx.x & 31;
@@ -80,17 +82,10 @@ cudaError_t launch_steps(const StepArguments& arguments, const StepLaunch& launc
 {
   if (launch.patches)
     return launch_patches(arguments, launch, stream);
-  const bool with_bound = arguments.frequency_bound != nullptr &&
-                          (arguments.bound_every_step || arguments.step_begin + 1 == arguments.steps);
-  cudaError_t status = cudaSuccess;
-  if ((launch.effects & Effects::added) == Effects::added)
-    status = launch_added_stress(arguments, with_bound, stream);
   constexpr auto sets = std::make_integer_sequence<int, cuda::strip_sets>();
-  const auto kernel =
-      with_bound ? cuda::step_kernel_of<true>(launch.effects, sets) : cuda::step_kernel_of<false>(launch.effects, sets);
-  kernel<<<launch.blocks, launch.threads, 0, stream>>>(arguments);
-  if (status == cudaSuccess)
-    status = cudaGetLastError();
+  const auto kernel = finds_bound(arguments) ? cuda::step_kernel_of<true>(launch.effects, sets)
+                                             : cuda::step_kernel_of<false>(launch.effects, sets);
+  cudaError_t status = cuda::launch_after(kernel, launch.blocks, launch.threads, stream, arguments);
   const bool tasks = (launch.effects & Effects::tasks) == Effects::tasks && !arguments.forces_only;
   if (status == cudaSuccess && tasks)
     status = launch_tasks(arguments, launch.effects, stream);

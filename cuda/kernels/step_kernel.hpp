@@ -340,8 +340,14 @@ int resident_blocks(const StepLaunch& launch);
 /// Launches steps [step_begin, step_end) of the plan. Only patches can run several steps per launch.
 cudaError_t launch_steps(const StepArguments& arguments, const StepLaunch& launch, cudaStream_t stream);
 cudaError_t launch_patches(const StepArguments& arguments, const StepLaunch& launch, cudaStream_t stream);
-/// In strips: finds the stress of all added voxels before the step.
-cudaError_t launch_added_stress(const StepArguments& arguments, bool with_bound, cudaStream_t stream);
+/// Whether the step of a launch finds the bound of the squared frequency.
+inline bool finds_bound(const StepArguments& g)
+{
+  return g.frequency_bound != nullptr && (g.bound_every_step || g.step_begin + 1 == g.steps);
+}
+/// In strips with Effects::added, before a step: finds the stress of all added voxels, and the forces on points of
+/// contact if ContactArguments::blocks_beside says so.
+cudaError_t launch_added_stress(const StepArguments& arguments, cudaStream_t stream);
 /// In strips: applies the constraints of all groups after the tasks of a step. The groups have no nodes in common.
 cudaError_t launch_attached(const StepArguments& arguments, cudaStream_t stream);
 /// In strips: applies the tasks of all nodes after their update. `effects`: those of nodes.

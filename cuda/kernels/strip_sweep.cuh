@@ -2,6 +2,7 @@
 
 #include "cuda/kernels/cut_voxel.cuh"
 #include "cuda/kernels/element_stress.cuh"
+#include "cuda/kernels/kernel_before.cuh"
 #include "cuda/kernels/node_tasks.cuh"
 
 namespace frontalis
@@ -99,8 +100,9 @@ __device__ __forceinline__ AddedStress fetch_added(const StepArguments& g, std::
   if (has<With, Effects::added> && palette - 1 < g.added_count)
   {
     const float4* const from = reinterpret_cast<const float4*>(g.added_stress + (palette - 1));
-    const float4 last = __ldg(from + 2);
-    added = { __ldg(from), __ldg(from + 1), last.x, last.y };
+    // not __ldg(): the kernel before may still write them when this one starts
+    const float4 last = from[2];
+    added = { from[0], from[1], last.x, last.y };
   }
   return added;
 }
@@ -218,6 +220,7 @@ __device__ __forceinline__ void sweep_strip(const StepArguments& g, const Strip&
 #pragma unroll
   for (int r = 0; r < nodes; ++r)
     above_slot[r] = slot[r * 32];
+  wait_for_kernel_before();
   {
     Displacement raw[nodes];
 #pragma unroll

@@ -1,5 +1,6 @@
 #include "cuda/kernels/tissue_contact_kernels.hpp"
 
+#include "cuda/kernels/launch_after.cuh"
 #include "cuda/kernels/push_nodes.cuh"
 #include "cuda/kernels/tissue_contact_search.cuh"
 #include "frontalis/physics/sliding.hpp"
@@ -17,22 +18,6 @@ struct Velocities
 
 // Small blocks spread a few thousand vertices over all multiprocessors.
 constexpr std::uint32_t touch_block = 64;
-
-// A kernel of this file may be launched before the preceding kernel has ended (launch_after()). It calls this function
-// to wait for that end. Code for compute capabilities below 9.0 cannot wait, and is never launched early.
-__device__ __forceinline__ void wait_for_kernel_before()
-{
-#if __CUDA_ARCH__ >= 900
-  cudaGridDependencySynchronize();
-#endif
-}
-// Allows the next kernel to be launched.
-__device__ __forceinline__ void let_next_kernel_start()
-{
-#if __CUDA_ARCH__ >= 900
-  cudaTriggerProgrammaticLaunchCompletion();
-#endif
-}
 
 __global__ void __launch_bounds__(touch_block)
     place_vertices(const __grid_constant__ TissueContactArguments c, const float4* u)
@@ -146,28 +131,6 @@ namespace
 std::uint32_t touch_blocks(const TissueContactArguments& contact)
 {
   return (contact.vertex_count + touch_block - 1) / touch_block;
-}
-
-// Launches a kernel that begins with wait_for_kernel_before().
-template <class... Parameters, class... Arguments>
-cudaError_t launch_after(void (*kernel)(Parameters...), std::uint32_t blocks, std::uint32_t threads,
-                         cudaStream_t stream, const Arguments&... arguments)
-{
-  static const bool early = [kernel]
-  {
-    cudaFuncAttributes attributes{};
-    return cudaFuncGetAttributes(&attributes, kernel) == cudaSuccess && attributes.ptxVersion >= 90;
-  }();
-  cudaLaunchAttribute attribute{};
-  attribute.id = cudaLaunchAttributeProgrammaticStreamSerialization;
-  attribute.val.programmaticStreamSerializationAllowed = 1;
-  cudaLaunchConfig_t config{};
-  config.gridDim = blocks;
-  config.blockDim = threads;
-  config.stream = stream;
-  config.attrs = &attribute;
-  config.numAttrs = early ? 1 : 0;
-  return cudaLaunchKernelEx(&config, kernel, arguments...);
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
+#include "cuda/kernels/contact_points.cuh"
 #include "cuda/kernels/cut_voxel.cuh"
 #include "cuda/kernels/element_stress.cuh"
+#include "cuda/kernels/launch_after.cuh"
 #include "frontalis/physics/ramp.hpp"
 #include "cuda/kernels/voxel_kernels.hpp"
 
@@ -37,14 +39,24 @@ __device__ __forceinline__ physics::Kinematics<float> kinematics_of(const StepAr
 // Effects of voxels that find_added_stress() computes.
 inline constexpr Effects added_effects = Effects::fibres | Effects::general_element;
 
-// Finds the stress of one added voxel per thread. WithBound: also finds what the laws add to its stiffness bound.
+// Finds the stress of one added voxel per thread. WithBound: also finds what the laws add to its stiffness bound. The
+// first blocks may find the forces on points of contact, which take long to load: one kernel hides more of that time
+// than two kernels one after the other.
 template <bool WithBound, bool Cut>
 __global__ void __launch_bounds__(block) find_added_stress(const __grid_constant__ StepArguments g)
 {
+  let_next_kernel_start();
+  if (blockIdx.x < g.contact.blocks_beside)
+  {
+    const std::uint32_t p = blockIdx.x * block + threadIdx.x;
+    if (p < g.contact.point_count)
+      put_push(g, p, g.contact.points[p], g.step_begin, wait_for_kernel_before);
+    return;
+  }
   __shared__ float2 activations[most_muscles];
   load_activations(g, activations);
   __syncthreads();
-  const std::uint32_t v = blockIdx.x * block + threadIdx.x;
+  const std::uint32_t v = (blockIdx.x - g.contact.blocks_beside) * block + threadIdx.x;
   if (v >= g.added_count)
     return;
   const AddedVoxel at = g.added_voxels[v];
@@ -52,6 +64,7 @@ __global__ void __launch_bounds__(block) find_added_stress(const __grid_constant
   place.palette = v + 1;
   if (g.fibres != nullptr && at.fibre_word != 0)
     fetch_fibre(g, at.fibre_word, place);
+  wait_for_kernel_before();
   const auto k = kinematics_of<Cut>(g, g.u[g.first], at.node, place.palette);
   const Activations activation = activations_at(g, g.step_begin, activations);
   const ElementVoxel<added_effects> voxel = element_voxel<added_effects>(g, place, activation, 0);
@@ -163,13 +176,14 @@ int blocks(std::uint32_t count) { return static_cast<int>((count + block - 1) / 
 }  // namespace
 }  // namespace cuda
 
-cudaError_t launch_added_stress(const StepArguments& arguments, bool with_bound, cudaStream_t stream)
+cudaError_t launch_added_stress(const StepArguments& arguments, cudaStream_t stream)
 {
+  const bool with_bound = finds_bound(arguments);
   const auto kernel = arguments.centres == nullptr
                           ? (with_bound ? cuda::find_added_stress<true, false> : cuda::find_added_stress<false, false>)
                           : (with_bound ? cuda::find_added_stress<true, true> : cuda::find_added_stress<false, true>);
-  kernel<<<cuda::blocks(arguments.added_count), cuda::block, 0, stream>>>(arguments);
-  return cudaGetLastError();
+  return cuda::launch_after(kernel, arguments.contact.blocks_beside + cuda::blocks(arguments.added_count), cuda::block,
+                            stream, arguments);
 }
 
 cudaError_t launch_relaxation(const StepArguments& arguments, const ViscousVoxels& viscous, const float4* u,
