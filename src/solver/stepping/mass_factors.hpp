@@ -21,7 +21,7 @@ std::vector<float> selective_mass_factors(const Model& model, const std::vector<
                                           const std::vector<std::array<float, 8>>& corner_stiffness,
                                           const std::vector<std::int32_t>& held);
 
-/// Gives nodes with little tissue around them the mass of a tenth of a voxel of it, for models with scaled mass. A
+/// Gives nodes with little tissue around them the mass of a fifth of a voxel of it, for models with scaled mass. A
 /// single voxel that is nearly empty may otherwise set the time step as it is distorted, and its corners are thrown by
 /// waves from the tissue around it. `node_mass`: lumped [kg].
 void raise_least_masses(const Model& model, std::vector<double>& node_mass);
