@@ -9,12 +9,12 @@ namespace
 {
 
 // Margins are needed, because the search finds too low an eigenvalue, and the model may stiffen until the next search.
-constexpr double frequency_margin = 1.1;  // factor on the squared frequency
-// replaces `frequency_margin` while searches are frequent
-constexpr double margin_in_motion = 1.25;
+constexpr double frequency_margin = 1.1;   // factor on the squared frequency
+constexpr double margin_in_motion = 1.25;  // replaces `frequency_margin` until the model has been found steady
+constexpr double steady_change = 0.03;     // largest relative change between searches of a steady model
 // Numbers of steps between searches. A search takes as long as 10 to 40 steps. After a change of activations or while
-// bones move, the tissue stiffens as it follows: the next search is then after `shortest_time`, as far as the limits of
-// steps allow it, and each further one after twice as many steps.
+// bones move, the tissue stiffens as it follows: searches are then `shortest_time` apart, as far as the limits of steps
+// allow it, until the model is steady.
 constexpr double shortest_time = 0.02;  // [s]
 constexpr std::int64_t fewest_valid = 50, shortest_valid = 200, longest_valid = 2000;
 // The ratio is found for activations that are higher by this much than the present ones, so that searches are few while
@@ -63,11 +63,11 @@ bool AssembledEstimate::renew(const std::vector<float>& activation, bool moving,
   for (std::size_t m = 0; m < activation.size() && (activated || !grown); ++m)
     activation_[m] = activation[m] > 0 ? std::min(1.0F, activation[m] + ahead) : 0;
   const double squared = search(activation_), least = slowest_fall * found_;
-  if (!known() || activated || moving || grown)
-    steps_valid_ = steps_in_motion(squared);
-  else
-    steps_valid_ = std::min(2 * steps_valid_, longest_valid);
-  const double allowance = steps_valid_ < longest_valid ? margin_in_motion : frequency_margin;
+  const bool steady =
+      known() && !activated && !moving && !grown && std::abs(squared - latest_) <= steady_change * latest_;
+  latest_ = squared;
+  steps_valid_ = steady ? longest_valid : steps_in_motion(squared);
+  const double allowance = steady ? frequency_margin : margin_in_motion;
   found_ = squared > 0 && std::isfinite(squared) ? std::min(most + growth, allowance * squared) : most + growth;
   if (found_ < least)
   {

@@ -37,12 +37,13 @@ public:
   bool renew(const std::vector<float>& activation, bool moving, double growth, double most, const Search& search);
   /// Forgets what was found. Call it when displacements were set from outside.
   void discard();
-  void archive(ByteArchive& archive) { archive(found_)(growth_)(softest_)(steps_)(steps_valid_)(activation_); }
+  void archive(ByteArchive& archive) { archive(found_)(growth_)(softest_)(latest_)(steps_)(steps_valid_)(activation_); }
 
 private:
   double found_ = 0;               // [1/s2]; 0: unknown
   double growth_ = 0;              // growth since rest at the latest search [1/s2]
-  double softest_ = 0;             // the least that a search has found [1/s2]
+  double softest_ = 0;             // the least that a search has found, with its margin [1/s2]
+  double latest_ = 0;              // what the latest search found [1/s2]
   std::int64_t steps_ = 0;         // steps since the latest search
   std::int64_t steps_valid_ = 0;   // number of steps for which it is valid
   std::vector<float> activation_;  // of the latest search
