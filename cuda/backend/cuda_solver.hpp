@@ -96,7 +96,7 @@ private:
   StepLaunch launch_{};
   std::unique_ptr<DeviceAccount> account_;
   std::unique_ptr<DeviceMonitor> monitor_;                  // made on first use
-  std::unique_ptr<FrequencySearch, SearchDeleter> search_;  // made on first use at the latest
+  std::unique_ptr<FrequencySearch, SearchDeleter> search_;  // made with the solver if steps follow the assembled model
 };
 
 }  // namespace cuda

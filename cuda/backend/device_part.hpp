@@ -47,7 +47,7 @@ public:
   // Functions for strips:
   /// Number of blocks of the kernel that finds added stress which can do what find_pushes() does; 0: they cannot.
   virtual std::uint32_t blocks_beside() const { return 0; }
-  /// Finds the forces on points at the start of a step.
+  /// Finds the forces on points at the start of a step. Not called if the kernel of blocks_beside() did so.
   virtual void find_pushes(const StepArguments& g, int step, cudaStream_t stream) const = 0;
   /// Passes the forces of find_pushes() on to nodes, as launch_push_nodes() does.
   virtual void push(const StepArguments& g, float factor, float* const (&v)[3], cudaStream_t stream) const = 0;

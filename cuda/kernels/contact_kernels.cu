@@ -11,7 +11,7 @@ namespace cuda
 
 // In strips, contact has kernels of its own, which run before each step. Its forces change the velocities of nodes.
 
-constexpr int block = 128, warp = 32;
+constexpr int block = contact_block, warp = 32;
 
 // Each block moves a body.
 __global__ void __launch_bounds__(warp)

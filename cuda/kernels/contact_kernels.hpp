@@ -6,6 +6,9 @@
 namespace frontalis
 {
 
+/// Number of points, or of voxels with added stress, that a block processes.
+constexpr int contact_block = 128;
+
 /// Number of blocks that find the forces on so many points.
 std::uint32_t find_pushes_blocks(std::uint32_t points);
 

@@ -16,6 +16,7 @@ template <class... Parameters, class... Arguments>
 cudaError_t launch_after(void (*kernel)(Parameters...), std::uint32_t blocks, std::uint32_t threads,
                          cudaStream_t stream, const Arguments&... arguments)
 {
+  // The same for all kernels with these parameters, because a build has the same architectures for all.
   static const bool early = [kernel]
   {
     cudaFuncAttributes attributes{};

@@ -337,7 +337,8 @@ constexpr std::size_t patch_bytes(std::size_t most_voxels, std::size_t most_halo
 /// device.
 int resident_blocks(const StepLaunch& launch);
 
-/// Launches steps [step_begin, step_end) of the plan. Only patches can run several steps per launch.
+/// Launches steps [step_begin, step_end) of the plan. Only patches can run several steps per launch. In strips with
+/// Effects::added, launch_added_stress() must come first.
 cudaError_t launch_steps(const StepArguments& arguments, const StepLaunch& launch, cudaStream_t stream);
 cudaError_t launch_patches(const StepArguments& arguments, const StepLaunch& launch, cudaStream_t stream);
 /// Whether the step of a launch finds the bound of the squared frequency.

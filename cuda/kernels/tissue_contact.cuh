@@ -165,16 +165,15 @@ __device__ __forceinline__ void touch_triangle(View&& view, std::int32_t p, Touc
   add(3, p, sum, nullptr);
 }
 
-/// Adds the forces of a vertex's pairs to the sums of the vertices. Calls wait(), which waits for the preceding kernel,
-/// once the pairs have been loaded.
+/// Adds the forces of a vertex's pairs to the sums of the vertices. Calls wait(), which waits for the preceding kernel.
 template <bool rubs, class Wait>
 __device__ __forceinline__ void touch_triangles(const TissueContactArguments& c, std::uint32_t v, float response,
                                                 const Wait& wait)
 {
   static_assert(touch_search::most_pairs == 2, "both pairs are loaded at once");
   TouchPair* const pairs = c.pairs + 2 * std::size_t(v);
-  const TouchPair both[2] = { pairs[0], pairs[1] };
   wait();
+  const TouchPair both[2] = { pairs[0], pairs[1] };
   const auto add = [&](int, std::int32_t to, const long long(&force)[3], const Place* turn)
   {
     for (int axis = 0; axis < 3; ++axis)

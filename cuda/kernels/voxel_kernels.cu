@@ -1,3 +1,4 @@
+#include "cuda/kernels/contact_kernels.hpp"
 #include "cuda/kernels/contact_points.cuh"
 #include "cuda/kernels/cut_voxel.cuh"
 #include "cuda/kernels/element_stress.cuh"
@@ -10,7 +11,7 @@ namespace frontalis
 namespace cuda
 {
 
-constexpr int block = 128;
+constexpr int block = contact_block;  // some blocks of find_added_stress() process points of contact
 
 // Cut: whether voxels may be partly filled.
 template <bool Cut>

@@ -110,8 +110,11 @@ TEST(AssembledEstimate, falls_slowly_and_is_found_often_meanwhile)
   search.renew(estimate, 0);
   double before = estimate.frequency_squared(0);
   search.found = 0.2 * soft;  // in a moment in which the tissue is soft
+  EXPECT_EQ(search.steps_until_next(estimate, 0), 200);
+  EXPECT_DOUBLE_EQ(estimate.frequency_squared(0), before) << "it covers the search before";
   for (int i = 0; i < 4; ++i)
   {
+    search.found *= 0.9;
     EXPECT_EQ(search.steps_until_next(estimate, 0), 200);
     EXPECT_DOUBLE_EQ(estimate.frequency_squared(0), 0.7 * before);
     before *= 0.7;

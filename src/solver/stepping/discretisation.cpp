@@ -209,7 +209,7 @@ Discretisation::Discretisation(const Model& model)
         weight[node] += mass / double(mass_factor_[e]) / 8;
     }
   }
-  if (scaling.kind == MassScalingSettings::Kind::uniform && !mass_factor_.empty())
+  if (raises_least_masses())
     raise_least_masses(model, node_mass);
   for (std::size_t n = 0; n < weight.size(); ++n)
     weight_share.push_back(static_cast<float>(weight[n] / node_mass[n]));
@@ -226,10 +226,9 @@ Discretisation::Discretisation(const Model& model)
 }
 
 // Adds inertia to attached nodes that slide and would shorten the time step. Such a node may have a higher frequency
-// than all free nodes if the voxels around it have little tissue, such as a sliver of tendon below a bone's surface.
-// Its mass grows to at most a fifth of the mass of a whole voxel. Then finds bound_mass. A held node follows its
-// master, so that only the sums of stiffness and mass over their group count; within a group bound_mass is in
-// proportion to stiffness.
+// than all free nodes if it has little tissue, such as a sliver of tendon below a bone's surface. It gets at most the
+// mass of `least_tissue`. Then finds bound_mass. A held node follows its master, so that only the sums of stiffness and
+// mass over their group count; within a group bound_mass is in proportion to stiffness.
 void Discretisation::share_masses()
 {
   std::vector<double> stiffness(node_mass.size(), 0), tissue(node_mass.size(), 0);
@@ -249,13 +248,14 @@ void Discretisation::share_masses()
     free[node.node] = false;
   for (const std::int32_t node : held)
     free[node] = false;
-  double highest = 0;
+  double highest = 0, raised = raises_least_masses() ? least_tissue : 0;
   for (std::size_t n = 0; n < free.size(); ++n)
     highest = free[n] ? std::max(highest, stiffness[n] / node_mass[n]) : highest;
   for (const AttachedNode& node : model_->attached)
   {
     double& mass = node_mass[node.node];
-    const double wanted = std::min(stiffness[node.node] / highest, 0.2 * mass / tissue[node.node]);
+    const double wanted =
+        std::min(stiffness[node.node] / highest, least_tissue * mass / std::max(raised, tissue[node.node]));
     if (node.surface < 0 || !(wanted > mass))
       continue;
     weight_share.resize(node_mass.size(), 1);

@@ -115,6 +115,10 @@ private:
   void mix(std::size_t index, VoxelProperties& out) const;
   void bound_at_rest();
   void share_masses();
+  bool raises_least_masses() const
+  {
+    return model_->mass_scaling.kind == MassScalingSettings::Kind::uniform && !mass_factor_.empty();
+  }
 
   const Model* model_;
   EffectSet running_;

@@ -66,8 +66,6 @@ std::vector<float> selective_mass_factors(const Model& model, const std::vector<
 
 void raise_least_masses(const Model& model, std::vector<double>& node_mass)
 {
-  // of a voxel; a node of a single full voxel has 0.125
-  constexpr double least_tissue = 0.2;
   std::vector<double> tissue(node_mass.size(), 0);
   for (std::size_t e = 0; e < model.voxels.size(); ++e)
     for (const std::int32_t node : model.voxel_nodes[e])
