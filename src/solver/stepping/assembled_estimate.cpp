@@ -11,10 +11,11 @@ namespace
 // Margins are needed, because the search finds too low an eigenvalue, and the model may stiffen until the next search.
 constexpr double frequency_margin = 1.1;   // factor on the squared frequency
 constexpr double margin_in_motion = 1.25;  // replaces `frequency_margin` until the model has been found steady
-constexpr double steady_change = 0.03;     // largest relative change between successive searches of a steady model
+// Largest relative changes of what is found, and of what is covered, between successive searches of a steady model.
+constexpr double steady_change = 0.03;
 // Numbers of steps between searches. A search takes as long as 10 to 40 steps. After a change of activations or while
-// bones move, the tissue stiffens as it follows: searches are then `shortest_time` apart, as far as the limits of steps
-// allow it, until the model is steady.
+// bones move, the tissue stiffens as it follows: the next search is then after `shortest_time`, as far as the limits of
+// steps allow it, and each further one after twice as many steps, or after `longest_valid` if the model is steady.
 constexpr double shortest_time = 0.02;  // [s]
 constexpr std::int64_t fewest_valid = 50, shortest_valid = 200, longest_valid = 2000;
 // The ratio is found for activations that are higher by this much than the present ones, so that searches are few while
@@ -24,9 +25,8 @@ constexpr float activation_tolerance = 0.02F;  // replaces `activation_ahead` wh
 // A search is made if what the estimate covers has grown by this factor, because the bound grows more than the model.
 constexpr double growth_allowed = 1.25;
 constexpr std::int64_t steps_until_growth_counts = 25;
-// The estimate falls by at most this factor per search, and unless the model is steady it covers the two latest
-// searches. A search may meet vibrating tissue in a moment in which it is soft, and the tissue stiffens again within a
-// few dozen steps.
+// The estimate falls by at most this factor per search. A search may meet vibrating tissue in a moment in which it is
+// soft, and the tissue stiffens again within a few dozen steps.
 constexpr double slowest_fall = 0.7;
 
 std::int64_t steps_in_motion(double frequency_squared)
@@ -64,13 +64,16 @@ bool AssembledEstimate::renew(const std::vector<float>& activation, bool moving,
   for (std::size_t m = 0; m < activation.size() && (activated || !grown); ++m)
     activation_[m] = activation[m] > 0 ? std::min(1.0F, activation[m] + ahead) : 0;
   const double squared = search(activation_), least = slowest_fall * found_;
-  const bool steady =
-      known() && !activated && !moving && !grown && std::abs(squared - latest_) <= steady_change * latest_;
-  const double allowed =
-      steady ? frequency_margin * squared : margin_in_motion * (known() ? std::max(squared, latest_) : squared);
+  const bool changes = !known() || activated || moving || grown;
+  const bool steady = !changes && std::abs(growth - growth_) <= steady_change * (found_ + growth_) &&
+                      std::abs(squared - latest_) <= steady_change * latest_;
   latest_ = squared;
-  steps_valid_ = steady ? longest_valid : steps_in_motion(squared);
-  found_ = squared > 0 && std::isfinite(squared) ? std::min(most + growth, allowed) : most + growth;
+  if (changes)
+    steps_valid_ = steps_in_motion(squared);
+  else
+    steps_valid_ = steady ? longest_valid : std::min(2 * steps_valid_, longest_valid);
+  const double allowance = steps_valid_ < longest_valid ? margin_in_motion : frequency_margin;
+  found_ = squared > 0 && std::isfinite(squared) ? std::min(most + growth, allowance * squared) : most + growth;
   if (found_ < least)
   {
     found_ = least;
