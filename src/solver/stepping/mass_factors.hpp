@@ -21,10 +21,12 @@ std::vector<float> selective_mass_factors(const Model& model, const std::vector<
                                           const std::vector<std::array<float, 8>>& corner_stiffness,
                                           const std::vector<std::int32_t>& held);
 
+/// Part of a voxel. Corners of full tissue have 0.125 and get more, too; edges of it have 0.25.
+constexpr double least_tissue = 0.2;
+
 /// Gives nodes with little tissue around them the mass of `least_tissue` of a voxel of it, for models with scaled mass.
 /// A single voxel that is nearly empty may otherwise set the time step as it is distorted, and its corners are thrown
 /// by waves from the tissue around it. `node_mass`: lumped [kg].
-constexpr double least_tissue = 0.2;  // corners of full tissue have 0.125 and get more, too; edges of it have 0.25
 void raise_least_masses(const Model& model, std::vector<double>& node_mass);
 
 }  // namespace frontalis
