@@ -173,6 +173,9 @@ double CudaSolver::run(const StepPlan& plan)
   g.time = plan.time;
   g.steps = plan.steps;
   g.bound_every_step = plan.bound_every_step;
+  device_.loads().begin(plan);
+  if (!device_.loads().act())
+    g.load_begin = nullptr;
   const bool relaxes = !device_.viscosity().idle();
   const std::vector<double> elapsed = relaxes ? plan.relaxation : std::vector<double>(plan.steps, 0);
   // Patches relax their viscous stresses within launches, unless the energy ledger needs the work of each relaxation.
@@ -325,7 +328,7 @@ std::vector<Reaction> CudaSolver::reactions() const
   for (const auto& part : device_.parts())
   {
     if (!account_ && !part->idle())
-      part->follow({ 0, 0, 0, conditions_.bone, conditions_.bone });
+      part->follow({ 0, 0, 0, conditions_.bone, conditions_.bone, conditions_.activation });
     for (const Reaction& reaction : part->reactions())
       all.push_back(reaction);
   }

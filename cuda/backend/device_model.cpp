@@ -165,7 +165,7 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
   g.load_parts = loads_.parts();
   g.load_begin = loads_.begin();
   g.vertex_force = loads_.vertex_force();
-  g.load_ramp = loads_.ramp();
+  g.load_growth = loads_.growth();
   g.load_relief = loads_.relief();
   g.selective_reduced = discretisation.selective_reduced;
   viscosity_.describe(g);

@@ -66,20 +66,22 @@ std::size_t DeviceSurface::bytes() const
 
 DeviceLoads::DeviceLoads(const Model& model, const Discretisation& discretisation,
                          const std::vector<std::uint32_t>& device_node)
+    : model_(model)
 {
-  std::vector<double> ramp, force, relief;
+  std::vector<double> force, relief;
+  std::vector<LoadGrowth> growth;
   nodes_ = relieved_nodes(model, discretisation);
   const bool relieved = !nodes_.empty();
   for (const auto& load : model.loads)
   {
-    ramp.push_back(load.ramp);
+    growth.push_back({ load.ramp, load.activation });
     if (load.kind == Load::Kind::displacement)
       continue;
     for (const auto voxel : load.binding.voxel)
       nodes_.insert(nodes_.end(), model.voxel_nodes[voxel].begin(), model.voxel_nodes[voxel].end());
   }
   if (!nodes_.empty())
-    ramp_ = DeviceArray<double>(ramp);
+    growth_ = DeviceArray<LoadGrowth>(growth);
   std::sort(nodes_.begin(), nodes_.end());
   nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
 
@@ -99,7 +101,7 @@ DeviceLoads::DeviceLoads(const Model& model, const Discretisation& discretisatio
     force.resize(force.size() + 3 * load.mesh.vertices.size(), 0);
     if (load.kind == Load::Kind::pressure)
       pressures_.push_back({ DeviceSurface(model, device_node, load.mesh.vertices, load.binding, load.mesh.triangles),
-                             load.value[0], first });
+                             &load, first, false });
     else
     {
       const std::vector<double> area = vertex_areas(load.mesh);
@@ -132,7 +134,7 @@ DeviceLoads::DeviceLoads(const Model& model, const Discretisation& discretisatio
   parts_ = DeviceArray<LoadPart>(parts);
   vertex_force_ = DeviceArray<double>(force);
   traction_ = std::move(force);
-  if (follow())
+  if (!pressures_.empty())
     vertex_position_ = DeviceArray<double>(traction_.size());
 }
 
@@ -147,21 +149,39 @@ void DeviceLoads::run(EffectSet running)
 void DeviceLoads::list_arrays(ArrayList& list)
 {
   const Effect effect = vertex_force_.size() > 0 ? Effect::surface_loads : Effect::gravity;
-  list.add(effect, "parts of a surface's forces", begin_.bytes() + parts_.bytes() + ramp_.bytes());
+  list.add(effect, "parts of a surface's forces", begin_.bytes() + parts_.bytes() + growth_.bytes());
   list.add(effect, "forces at vertices", vertex_force_.bytes() + vertex_position_.bytes());
   list.add(Effect::gravity, "weight that mass scaling added", relief_.bytes());
   for (const Pressure& pressure : pressures_)
     list.add(effect, "surfaces", pressure.surface.bytes());
 }
 
+bool DeviceLoads::acts(const Load& load, const StepPlan& plan) const
+{
+  if (!runs_ || load.kind == Load::Kind::displacement)
+    return false;
+  const auto a = static_cast<std::size_t>(std::max(load.activation, 0));
+  return load.activation < 0 || plan.begin.activation[a] != 0 || plan.end.activation[a] != 0;
+}
+
+void DeviceLoads::begin(const StepPlan& plan)
+{
+  acts_ = std::any_of(model_.loads.begin(), model_.loads.end(), [&](const Load& load) { return acts(load, plan); });
+  follows_ = false;
+  for (Pressure& pressure : pressures_)
+  {
+    pressure.acts = acts(*pressure.load, plan);
+    follows_ = follows_ || pressure.acts;
+  }
+}
+
 void DeviceLoads::update(const float4* u, cudaStream_t stream)
 {
-  if (!runs_)
-    return;
   for (const auto& p : pressures_)
-    require(launch_pressure(p.surface.view(), u, p.value, vertex_position_.data() + 3 * p.first_vertex,
-                            vertex_force_.data() + 3 * p.first_vertex, stream),
-            "forces of a pressure");
+    if (p.acts)
+      require(launch_pressure(p.surface.view(), u, p.load->value[0], vertex_position_.data() + 3 * p.first_vertex,
+                              vertex_force_.data() + 3 * p.first_vertex, stream),
+              "forces of a pressure");
 }
 
 }  // namespace cuda

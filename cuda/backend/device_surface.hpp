@@ -2,6 +2,7 @@
 
 #include "cuda/backend/device_memory.hpp"
 #include "solver/stepping/discretisation.hpp"
+#include "solver/stepping/step_plan.hpp"
 #include "frontalis/model/model.hpp"
 #include "cuda/kernels/step_kernel.hpp"
 #include "cuda/kernels/surface_kernels.hpp"
@@ -48,10 +49,14 @@ public:
   const LoadPart* parts() const { return parts_.data(); }
   const double* vertex_force() const { return vertex_force_.data(); }
   const double* relief() const { return relief_.data(); }
-  const double* ramp() const { return ramp_.data(); }
+  const LoadGrowth* growth() const { return growth_.data(); }
 
-  /// Whether a load follows the surface, so that forces change in every step.
-  bool follow() const { return runs_ && !pressures_.empty(); }
+  /// Begins a plan. Without an activation, an activated load neither follows its surface nor acts.
+  void begin(const StepPlan& plan);
+  /// Whether a load acts in this plan.
+  bool act() const { return acts_; }
+  /// Whether a load that acts in this plan follows its surface, so that forces change in every step.
+  bool follow() const { return follows_; }
   /// Switches loads and the correction of gravity on or off with their effects.
   void run(EffectSet running) override;
   void reset() override {}
@@ -63,16 +68,22 @@ private:
   struct Pressure
   {
     DeviceSurface surface;
-    double value;
+    const Load* load;
     std::size_t first_vertex;
+    bool acts;
   };
 
-  bool runs_ = true, relieves_ = true;
+  /// Whether a load acts at any time of a plan.
+  bool acts(const Load& load, const StepPlan& plan) const;
+
+  const Model& model_;
+  bool runs_ = true, relieves_ = true, acts_ = false, follows_ = false;
   std::vector<double> traction_;  // forces of tractions on the vertices, three per vertex [N]
   std::vector<std::int32_t> nodes_;
   DeviceArray<std::int32_t> begin_;
   DeviceArray<LoadPart> parts_;
-  DeviceArray<double> vertex_force_, vertex_position_, ramp_, relief_;
+  DeviceArray<double> vertex_force_, vertex_position_, relief_;
+  DeviceArray<LoadGrowth> growth_;
   std::vector<Pressure> pressures_;
 };
 

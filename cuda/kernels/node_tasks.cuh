@@ -2,6 +2,7 @@
 
 #include "frontalis/physics/element/node_motion.hpp"
 #include "frontalis/physics/ramp.hpp"
+#include "cuda/kernels/acting_load.cuh"
 #include "cuda/kernels/sliding_nodes.cuh"
 
 namespace frontalis
@@ -21,10 +22,11 @@ static __device__ __noinline__ void add_load(const StepArguments& g, std::int32_
                                              NodeState& n)
 {
   double force[3] = { 0, 0, 0 };
-  for (auto l = g.load_begin[index]; l < g.load_begin[index + 1]; ++l)
+  const bool loaded = g.load_begin != nullptr;
+  for (auto l = loaded ? g.load_begin[index] : 0; loaded && l < g.load_begin[index + 1]; ++l)
   {
     const LoadPart part = g.load_parts[l];
-    const double share = part.weight * physics::ramped(g.time + at.step * g.dt_exact, g.load_ramp[part.load]);
+    const double share = part.weight * acting_share(g, part.load, at.step);
     for (int i = 0; i < 3; ++i)
       force[i] += share * g.vertex_force[3 * part.vertex + i];
   }

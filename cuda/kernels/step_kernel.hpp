@@ -48,8 +48,15 @@ __host__ __device__ inline bool has_only(const NodeTask& task, NodeEffect effect
 struct LoadPart
 {
   std::int32_t vertex;  ///< index into StepArguments::vertex_force
-  std::int32_t load;    ///< index of the load whose ramp the part follows
+  std::int32_t load;    ///< index into StepArguments::load_growth
   float weight;
+};
+
+/// How a load grows.
+struct LoadGrowth
+{
+  double ramp;              ///< [s]
+  std::int32_t activation;  ///< index of the activation that it is multiplied by instead; -1: none
 };
 
 struct PrescribedMotion
@@ -162,10 +169,10 @@ struct StepArguments : physics::Kick<float>
   const NodeTask* tasks;
   std::uint32_t task_count;
   const LoadPart* load_parts;
-  const std::int32_t* load_begin;
-  const double* vertex_force;  ///< three per vertex, at the end of the ramp [N]
-  const double* load_ramp;     ///< one per load [s]
-  const double* load_relief;   ///< three per loaded node: correction of gravity for scaled mass [N]; or null
+  const std::int32_t* load_begin;  ///< null: no load acts
+  const double* vertex_force;      ///< three per vertex, of the whole load [N]
+  const LoadGrowth* load_growth;   ///< one per load
+  const double* load_relief;       ///< three per loaded node: correction of gravity for scaled mass [N]; or null
   // Sliding nodes, on surfaces that stand still and on moving ones; those with friction come first. Samples depend on a
   // node's position only; planes and `pressing` are state.
   const physics::DistanceField* fields;

@@ -1,9 +1,9 @@
+#include "cuda/kernels/acting_load.cuh"
 #include "cuda/kernels/contact_kernels.hpp"
 #include "cuda/kernels/contact_points.cuh"
 #include "cuda/kernels/cut_voxel.cuh"
 #include "cuda/kernels/element_stress.cuh"
 #include "cuda/kernels/launch_after.cuh"
-#include "frontalis/physics/ramp.hpp"
 #include "cuda/kernels/voxel_kernels.hpp"
 
 namespace frontalis
@@ -155,14 +155,14 @@ __global__ void __launch_bounds__(block)
     load_work(const __grid_constant__ StepArguments g, const NodeAccount account, int step)
 {
   const std::uint32_t l = blockIdx.x * block + threadIdx.x;
-  if (l >= account.loaded_nodes)
+  if (l >= account.loaded_nodes || g.load_begin == nullptr)
     return;
   const std::uint32_t n = account.loaded[l];
   double work = 0;
   for (auto p = g.load_begin[l]; p < g.load_begin[l + 1]; ++p)
   {
     const LoadPart part = g.load_parts[p];
-    const double share = part.weight * physics::ramped(g.time + step * g.dt_exact, g.load_ramp[part.load]);
+    const double share = part.weight * acting_share(g, part.load, step);
     for (int i = 0; i < 3; ++i)
       work += share * g.vertex_force[3 * part.vertex + i] * 0.5 * (double(g.velocity_before[i][n]) + double(g.v[i][n]));
   }

@@ -152,9 +152,7 @@ Model bake(const Scene& given, BakeReport* report, const BakeProgress& progress)
   if (measure)
   {
     monitor.begin("muscle volumes");
-    report->muscles = measure_muscles(volumes, model, monitor);
-    for (std::size_t m = 0; m < fibres.size(); ++m)
-      report->muscles[m].nurbs = fibres[m].fitted_size;
+    report->muscles = measure_muscles(volumes, fibres, model, monitor);
   }
   monitor.begin("check");
   weaken_muscles(scene, frame, model);

@@ -127,6 +127,9 @@ void copy_settings(const Scene& scene, const LocalFrame& frame, Model& model)
   for (const SceneMuscle& muscle : scene.muscles)
     model.muscles.push_back({ muscle.name, muscle.stress_reference, muscle.passive, muscle.tension_length,
                               muscle.rise_time, muscle.fall_time, muscle.tone });
+  for (const SceneLoad& load : scene.loads)
+    if (load.activated)
+      model.muscles.emplace_back().name = load.name;
   model.damping = scene.time.damping;
   model.time_scaling = scene.time.scaling;
   model.frame_rate = scene.time.frame_rate;

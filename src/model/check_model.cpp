@@ -193,6 +193,7 @@ void check_loads(const Model& model)
       fail(name, "kind {} is not known", static_cast<int>(load.kind));
     check_entry(name + " (value)", l, check_finite, load.value);
     check_finite(name + " (ramp)", l, load.ramp);
+    index_below(model.muscles.size(), -1)(name + " (activation)", l, load.activation);
     check_mesh(name, load.mesh);
     check_binding(name + ".binding", load.binding, load.mesh.vertices.size(), model.voxels.size());
   }

@@ -112,7 +112,8 @@ void exchange_model(Archive& archive, AnyModel& model)
 
   archive("gravity", model.gravity);
   archive.table("loads", model.loads, Column{ "name", &Load::name }, Column{ "kind", &Load::kind },
-                Column{ "value", &Load::value }, Column{ "fixed", &Load::fixed }, Column{ "ramp", &Load::ramp });
+                Column{ "value", &Load::value }, Column{ "fixed", &Load::fixed }, Column{ "ramp", &Load::ramp },
+                Column{ "activation", &Load::activation });
   for (std::size_t l = 0; l < model.loads.size(); ++l)
   {
     const std::string path = "loads/" + std::to_string(l);

@@ -154,7 +154,8 @@ void add_restrictions(const Scene& scene, Content& content)
       content.add("pushed", c.pushed->mass, c.pushed->force, c.pushed->spring, c.pushed->damping);
   }
   for (const SceneLoad& load : scene.loads)
-    content.line("load", load.name, load.kind, load.surface, load.value, load.fixed, load.within, load.ramp, load.crop);
+    content.line("load", load.name, load.kind, load.surface, load.value, load.fixed, load.within, load.ramp,
+                 load.activated, load.crop);
   content.line("gravity", scene.gravity);
   content.line("switched off", names_of(scene.switched_off));
 }

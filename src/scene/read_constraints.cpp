@@ -120,7 +120,7 @@ void read_constraints(const Node& node, Scene& scene, SceneNames& names)
   names.bones.complete = !node.faulty();
 }
 
-void read_loads(const Node& node, Scene& scene, const SceneNames& names)
+void read_loads(const Node& node, Scene& scene, SceneNames& names)
 {
   using Kind = SceneLoad::Kind;
   const std::map<std::string, Kind> kinds{ { "traction", Kind::traction },
@@ -143,10 +143,22 @@ void read_loads(const Node& node, Scene& scene, const SceneNames& names)
       load.within = mapping.optional("within").number(Dimension::length, positive, load.within);
     }
     load.surface = mapping.required("surface", "the name of a surface").reference(names.surfaces);
-    load.ramp = mapping.optional("ramp").number(Dimension::time, not_negative, load.ramp);
+    const Node ramp = mapping.optional("ramp"), activated = mapping.optional("activated");
+    load.ramp = ramp.number(Dimension::time, not_negative, load.ramp);
+    load.activated = activated.boolean(false);
+    if (load.activated && load.kind == Kind::displacement)
+      activated.fault("goes with traction and pressure, not with displacement");
+    if (load.activated && ramp.given())
+      ramp.fault("does not go with 'activated'; the activation sets how the load grows");
+    if (load.activated && names.muscles.has(load.name))
+      activated.fault("there is a muscle '{}'; an activated load needs a name of its own", load.name);
+    if (load.activated)
+      names.activations.names.push_back(load.name);
     load.crop = read_region(mapping.optional("crop"));
   };
+  names.activations.names = names.muscles.names;
   read_list(node, scene.loads, read);
+  names.activations.complete = names.muscles.complete && !node.faulty();
 }
 
 }  // namespace frontalis

@@ -64,7 +64,7 @@ private:
         add_bone(bone, weight, pose.bones);
       return;
     }
-    for (const std::string& muscle : in_scene(key, value, names_.muscles))
+    for (const std::string& muscle : in_scene(key, value, names_.activations))
       if (named.insert(muscle).second)
         pose.activation[muscle] += weight;
       else

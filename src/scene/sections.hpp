@@ -20,6 +20,7 @@ struct SceneNames
   Names volumes{ "volume", {}, true };
   Names tissue_volumes{ "tissue volume", {}, true };
   Names muscles{ "muscle", {}, true };
+  Names activations{ "muscle", {}, true };  ///< muscles, and loads with an activation of their own
   Names expressions{ "expression", { "relax" }, true };
   Names bones{ "bone", {}, true };
   std::map<std::string, std::vector<std::string>> muscle_sets;  ///< by set of surfaces the muscles among its parts
@@ -37,7 +38,7 @@ void read_layers(const Node& node, Scene& scene, const SceneNames& names);
 void read_muscles(const Node& node, Scene& scene, SceneNames& names);
 void read_weakness(const Node& node, Scene& scene, const SceneNames& names);
 void read_constraints(const Node& node, Scene& scene, SceneNames& names);
-void read_loads(const Node& node, Scene& scene, const SceneNames& names);
+void read_loads(const Node& node, Scene& scene, SceneNames& names);
 /// Must be called after read_constraints(), because the constraints decide whether the scene has friction.
 void read_effects(const Node& node, Scene& scene);
 void read_skin(const Node& node, Scene& scene, const SceneNames& names);

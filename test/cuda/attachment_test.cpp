@@ -179,7 +179,7 @@ TEST(AttachedNodesOfTheGpu, MoveAsOnTheHost)
           *component[axis] += static_cast<float>(dt) * device.v[axis][number[n]];
         }
       }
-      const ConstraintStep now{ (step + 1) * dt, dt, step * dt, { pose(step + 1) }, { pose(step) } };
+      const ConstraintStep now{ (step + 1) * dt, dt, step * dt, { pose(step + 1) }, { pose(step) }, {} };
       host.constrain_groups({ 0, 1, 0, 7, 0, static_cast<std::int32_t>(count) }, to_u, to_v, now);
       device.step(step);
       for (std::size_t n = 0; n < count; ++n)

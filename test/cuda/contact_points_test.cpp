@@ -71,7 +71,7 @@ public:
   // A wave passes through the tissue while the finger presses, strokes and leaves.
   void step(int number)
   {
-    const ConstraintStep now{ (number + 1) * dt, dt, number * dt, bones(number + 1), bones(number) };
+    const ConstraintStep now{ (number + 1) * dt, dt, number * dt, bones(number + 1), bones(number), {} };
     std::vector<float> of_bodies;
     for (const ContactBody& body : bodies_)
       add_pose(body, now.bone_before, of_bodies);

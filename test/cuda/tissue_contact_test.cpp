@@ -87,7 +87,7 @@ public:
     on_host.assign(model_.nodes.size(), {});
     on_gpu.assign(model_.nodes.size(), {});
     const NodeShare all{ 0, 1, 0, model_.size[2] + 1, 0, static_cast<std::int32_t>(model_.nodes.size()) };
-    const ConstraintStep now{ 0, dt, 0, {}, {} };
+    const ConstraintStep now{ 0, dt, 0, {}, {}, {} };
     Components forces = u_;
     for (auto& component : forces)
       std::fill(component.begin(), component.end(), 0.0);

@@ -55,8 +55,10 @@ inline Model full_block(std::int32_t nx, std::int32_t ny, std::int32_t nz)
   model.tissue_centre.assign(model.voxels.size(), { 0, 0.25F, -0.5F });
   model.attached = { { 4, 5, -0.25, 1, -1, -1 }, { 6, 5, 0.5, -1, 0, -1 } };
   model.gravity = { 0, 0, -9.81 };
-  model.loads = { { "pull", Load::Kind::pressure, { { 1, 2, 3 } }, { { true, false, true } }, 0.5, triangle, binding },
-                  { "push", Load::Kind::displacement, { { 0, 0, 1e-3 } }, { { false, false, true } }, 0, {}, {} } };
+  model.loads = {
+    { "pull", Load::Kind::pressure, { { 1, 2, 3 } }, { { true, false, true } }, 0.5, 0, triangle, binding },
+    { "push", Load::Kind::displacement, { { 0, 0, 1e-3 } }, { { false, false, true } }, 0, -1, {}, {} }
+  };
   model.prescribed = { { 3, 1 } };
   model.skin = triangle;
   model.skin_binding = binding;

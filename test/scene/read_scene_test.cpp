@@ -330,17 +330,17 @@ TEST(EveryKey, constraints_and_loads)
   EXPECT_EQ(scene.constraints[4].within, 0);
   EXPECT_EQ(scene.constraints[4].bone, "finger");
   EXPECT_EQ(scene.constraints[4].crop.lower[0], 1e-2);
-
-  ASSERT_EQ(scene.loads.size(), 3U);
+  ASSERT_EQ(scene.loads.size(), 4U);
   EXPECT_EQ(scene.loads[0].kind, SceneLoad::Kind::traction);
   expect_vector(scene.loads[0].value, { 0, 0, 1000 });
   EXPECT_EQ(scene.loads[0].ramp, 0.1);
   EXPECT_EQ(scene.loads[1].kind, SceneLoad::Kind::pressure);
   EXPECT_EQ(scene.loads[1].value[0], -2000);
-  EXPECT_EQ(scene.loads[2].kind, SceneLoad::Kind::displacement);
-  EXPECT_EQ(scene.loads[2].fixed, (std::array<bool, 3>{ false, true, true }));
-  expect_vector(scene.loads[2].value, { 0, 0, 0.005 });
-  EXPECT_NEAR(scene.loads[2].within, 0.5e-3, 1e-15);
+  EXPECT_TRUE(scene.loads[2].activated);
+  EXPECT_EQ(scene.loads[3].kind, SceneLoad::Kind::displacement);
+  EXPECT_EQ(scene.loads[3].fixed, (std::array<bool, 3>{ false, true, true }));
+  expect_vector(scene.loads[3].value, { 0, 0, 0.005 });
+  EXPECT_NEAR(scene.loads[3].within, 0.5e-3, 1e-15);
   expect_vector(scene.gravity, { 0, 0, -9.81 });
   EXPECT_EQ(names_of(scene.switched_off), "viscosity, sliding, friction");
 }

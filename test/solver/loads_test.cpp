@@ -66,10 +66,8 @@ Model loaded_block(Load::Kind kind, const std::array<double, 3>& value, test::Bl
   return model;
 }
 
-double top_stretch(Solver& solver, const Model& model)
+double stretch(const Solver& solver, const Model& model)
 {
-  for (int i = 0; i < 10; ++i)
-    solver.advance(0.01, {});
   Vectors u;
   solver.displacements(u);
   double sum = 0;
@@ -81,6 +79,13 @@ double top_stretch(Solver& solver, const Model& model)
       ++count;
     }
   return 1 + sum / count / (model.size[2] * model.spacing[2]);
+}
+
+double top_stretch(Solver& solver, const Model& model)
+{
+  for (int i = 0; i < 10; ++i)
+    solver.advance(0.01, {});
+  return stretch(solver, model);
 }
 
 }  // namespace
@@ -107,6 +112,34 @@ TEST_P(Loads, PressureFollowsTheArea)
   const Model model = loaded_block(Load::Kind::pressure, { { 1.333561 * mu / (1.191455 * 1.191455), 0, 0 } }, s);
   const auto solver_ = solver(model);
   EXPECT_NEAR(top_stretch(*solver_, model), 0.7, 1e-4);
+}
+
+TEST_P(Loads, ActivationSetsThePressure)
+{
+  // A pressure of the stretch 0.7 that acts by seven tenths, against one of seven tenths that acts in full.
+  test::BlockSettings s;
+  const double mu = test::shear_modulus(s), pressure = 1.333561 * mu / (1.191455 * 1.191455);
+  Model activated = loaded_block(Load::Kind::pressure, { { pressure, 0, 0 } }, s);
+  activated.muscles.push_back({ "air" });
+  activated.loads.back().activation = 0;
+  const Model whole = loaded_block(Load::Kind::pressure, { { 0.7 * pressure, 0, 0 } }, s);
+  const auto by_activation = solver(activated), by_ramp = solver(whole);
+
+  by_activation->advance(0.02, { { 0 }, {} });
+  Vectors u;
+  by_activation->displacements(u);
+  for (const auto& moved : u)
+    for (const double component : moved)
+      EXPECT_EQ(component, 0);
+  by_activation->advance(0.01, { { 0.7F }, {} });
+  const double reached = top_stretch(*by_ramp, whole);
+  for (int i = 0; i < 10; ++i)
+    by_activation->advance(0.01, { { 0.7F }, {} });
+  EXPECT_NEAR(stretch(*by_activation, activated), reached, 1e-4);
+
+  for (int i = 0; i < 20; ++i)
+    by_activation->advance(0.01, { { 0 }, {} });
+  EXPECT_NEAR(stretch(*by_activation, activated), 1, 1e-4);
 }
 
 FRONTALIS_EVERY_BACKEND(Loads);

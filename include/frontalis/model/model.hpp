@@ -46,7 +46,8 @@ struct Model : ModelPresets
   std::vector<std::array<float, 6>> material_directions;
 
   // The muscles of voxel e are in the entries from fibre_begin[e] up to, but not including, fibre_begin[e + 1].
-  // Directions have length 1.
+  // Directions have length 1. Loads with an activation of their own (Load::activation) are among the muscles; they have
+  // no fibres.
   std::vector<Muscle> muscles;
   std::vector<std::int32_t> fibre_begin;
   std::vector<std::int16_t> fibre_muscle;

@@ -81,8 +81,11 @@ struct Load
   std::array<double, 3> value{};                      ///< local axes; [Pa] (pressure: first component) or [m]
   std::array<bool, 3> fixed{ { true, true, true } };  ///< displacement: which components are prescribed, local axes
   double ramp = 0;                                    ///< [s]
-  TriangleMesh mesh;                                  ///< traction and pressure: the surface, at rest
-  Binding binding;                                    ///< binding of the mesh's vertices
+  /// index into Model::muscles of the activation that a traction or pressure is multiplied by; -1: it grows over the
+  /// ramp
+  std::int32_t activation = -1;
+  TriangleMesh mesh;  ///< traction and pressure: the surface, at rest
+  Binding binding;    ///< binding of the mesh's vertices
 };
 
 }  // namespace frontalis

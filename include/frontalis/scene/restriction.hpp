@@ -60,6 +60,8 @@ struct SceneLoad
   std::array<bool, 3> fixed{ true, true, true };
   double within = -1;  ///< displacement only: see SceneConstraint::within
   double ramp = 0;     ///< [s]
+  /// Whether the load is multiplied by an activation of its own, which has the load's name, instead of by the ramp.
+  bool activated = false;
   Region crop;
   int line = 0;
 };

@@ -48,7 +48,7 @@ void scale_strength(const Scene& scene, const std::vector<MuscleFibres>& fibres,
       extent.last = std::max(extent.last, fibres[m].along(frame.voxel_centre(model, e)));
     }
   const double edge = *std::max_element(model.spacing.begin(), model.spacing.end());
-  for (std::size_t m = 0; m < model.muscles.size(); ++m)
+  for (std::size_t m = 0; m < fibres.size(); ++m)
   {
     Muscle& muscle = model.muscles[m];
     BakeReport::MuscleForce force;

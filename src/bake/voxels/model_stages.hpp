@@ -151,6 +151,7 @@ void bind_surfaces(const Scene& scene, const PreparedSurfaces& surfaces, const L
                    BakeMonitor& monitor);
 
 /// Volumes of the muscles that surfaces bound, in the order of the model's muscles.
-std::vector<BakeReport::MuscleVolume> measure_muscles(const Volumes& volumes, const Model& model, BakeMonitor& monitor);
+std::vector<BakeReport::MuscleVolume> measure_muscles(const Volumes& volumes, const std::vector<MuscleFibres>& fibres,
+                                                      const Model& model, BakeMonitor& monitor);
 
 }  // namespace frontalis

@@ -1,3 +1,4 @@
+#include "bake/fibres/fibres.hpp"
 #include "bake/voxels/model_stages.hpp"
 
 namespace frontalis
@@ -99,9 +100,10 @@ void measure(const Volumes& volumes, const Volumes::Entry& entry, BakeReport::Mu
 
 }  // namespace
 
-std::vector<BakeReport::MuscleVolume> measure_muscles(const Volumes& volumes, const Model& model, BakeMonitor& monitor)
+std::vector<BakeReport::MuscleVolume> measure_muscles(const Volumes& volumes, const std::vector<MuscleFibres>& fibres,
+                                                      const Model& model, BakeMonitor& monitor)
 {
-  std::vector<BakeReport::MuscleVolume> muscles(model.muscles.size());
+  std::vector<BakeReport::MuscleVolume> muscles(fibres.size());
   const double voxel_volume = model.spacing[0] * model.spacing[1] * model.spacing[2];
   for (std::size_t e = 0; e < model.voxels.size(); ++e)
     for (std::int32_t m = model.fibre_begin[e]; m < model.fibre_begin[e + 1]; ++m)
@@ -115,6 +117,7 @@ std::vector<BakeReport::MuscleVolume> measure_muscles(const Volumes& volumes, co
                [&](std::size_t m)
                {
                  muscles[m].name = model.muscles[m].name;
+                 muscles[m].nurbs = fibres[m].fitted_size;
                  if (made_of_surfaces[m] != nullptr)
                    measure(volumes, *made_of_surfaces[m], muscles[m]);
                });

@@ -67,12 +67,29 @@ EnergyBound::EnergyBound(const Model& model) : model_(model), fibres_(model.musc
   NodalLoads<double> loads(model, discretisation);
   const std::vector<double> rest(model.nodes.size(), 0);
   const double* const u[3] = { rest.data(), rest.data(), rest.data() };
-  loads.update(1e300, u);
-  double pressed = 0;
-  for (std::size_t l = 0; l < loads.nodes().size(); ++l)
-    for (const double f : loads.surface_forces()[l])
-      pressed += 0.5 * f * f / discretisation.node_mass[loads.nodes()[l]];
-  push_ = std::sqrt(squared) + std::sqrt(pressed);
+  std::vector<float> activation(model.muscles.size(), 0);
+  loads.update(1e300, activation, u);
+  const auto ramped = loads.surface_forces();
+  const auto push_beyond = [&](const std::vector<std::array<double, 3>>& others)
+  {
+    double pressed = 0;
+    for (std::size_t l = 0; l < loads.nodes().size(); ++l)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+      {
+        const double f = loads.surface_forces()[l][axis] - others[l][axis];
+        pressed += 0.5 * f * f / discretisation.node_mass[loads.nodes()[l]];
+      }
+    return std::sqrt(pressed);
+  };
+  push_ = std::sqrt(squared) + push_beyond(std::vector<std::array<double, 3>>(ramped.size()));
+  for (const Load& load : model.loads)
+    if (load.activation >= 0)
+    {
+      activation[load.activation] = 1;
+      loads.update(1e300, activation, u);
+      activated_push_.emplace_back(load.activation, push_beyond(ramped));
+      activation[load.activation] = 0;
+    }
 }
 
 double EnergyBound::most(const Interval& interval) const
@@ -95,7 +112,10 @@ double EnergyBound::most(const Interval& interval) const
     const double share = interval.begin == 0 && load.ramp == 0 ? 1 : part;
     given += 0.5 * nodes.stiffness * share * share * (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
   }
-  const double root = std::sqrt(interval.energy + given) + push_ * (interval.end - interval.begin);
+  double push = push_;
+  for (const auto& [activation, full] : activated_push_)
+    push += double(interval.activation[activation]) * full;
+  const double root = std::sqrt(interval.energy + given) + push * (interval.end - interval.begin);
   return margin * root * root;
 }
 

@@ -35,7 +35,10 @@ private:
   };
 
   const Model& model_;
-  double push_ = 0;  // root of the sum of f^2 / (2 m) [sqrt(J)/s]
+  // Roots of sums of f^2 / (2 m) [sqrt(J)/s]: of gravity and ramped loads, and of each activated load, with the index
+  // of its activation.
+  double push_ = 0;
+  std::vector<std::pair<std::int32_t, double>> activated_push_;
   double floor_ = 0;
   bool viscous_ = false;
   std::vector<double> fibres_;  // one per muscle: tension times volume [J]

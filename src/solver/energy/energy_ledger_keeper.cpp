@@ -111,7 +111,7 @@ NodalVectors EnergyLedgerKeeper::external_forces(double time, const NodalVectors
     for (const auto& x : u)
       component[axis].push_back(x[axis]);
   const double* const pointers[3] = { component[0].data(), component[1].data(), component[2].data() };
-  loads_.update(time, pointers);
+  loads_.update(time, conditions_.activation, pointers);
   for (std::size_t l = 0; l < loads_.nodes().size(); ++l)
     forces[loads_.nodes()[l]] = loads_.forces()[l];
   return forces;

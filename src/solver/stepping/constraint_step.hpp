@@ -7,7 +7,7 @@
 namespace frontalis
 {
 
-/// Times of one step, and poses of the bones at its start and end.
+/// Times of one step, poses of the bones at its start and end, and activations.
 struct ConstraintStep
 {
   double time = 0;  ///< time at the end of the step [s]
@@ -15,6 +15,7 @@ struct ConstraintStep
   double time_before = 0;                   ///< time at the start of the step [s]
   std::vector<RigidTransform> bone;         ///< poses at the end of the step
   std::vector<RigidTransform> bone_before;  ///< poses at the start of the step
+  std::vector<float> activation;            ///< of each muscle during the step
 };
 
 }  // namespace frontalis

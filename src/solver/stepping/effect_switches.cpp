@@ -32,7 +32,13 @@ std::array<double, 3> EffectSwitches::gravity() const
 
 std::vector<float> EffectSwitches::felt(const std::vector<float>& activation) const
 {
-  return running_.has(Effect::contraction) ? activation : std::vector<float>(activation.size(), 0);
+  if (running_.has(Effect::contraction))
+    return activation;
+  std::vector<float> acting(activation.size(), 0);
+  for (const Load& load : model_.loads)
+    if (load.activation >= 0)
+      acting[load.activation] = activation[load.activation];
+  return acting;
 }
 
 Effect effect_of_fibres(const Model& model)

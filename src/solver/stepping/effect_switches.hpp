@@ -21,7 +21,7 @@ public:
   /// Acceleration of gravity for the scaled masses [m/s2]. It is reduced, because uniform mass scaling must not change
   /// weight.
   std::array<double, 3> gravity() const;
-  /// Activations that act on the fibres: 0 while contraction is switched off.
+  /// Activations that act: those of fibres are 0 while contraction is switched off.
   std::vector<float> felt(const std::vector<float>& activation) const;
 
 private:

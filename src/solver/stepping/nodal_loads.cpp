@@ -2,7 +2,6 @@
 
 #include "solver/skin/bound_points.hpp"
 
-#include "frontalis/physics/ramp.hpp"
 #include "frontalis/physics/trilinear.hpp"
 #include "frontalis/solver/rigid_motion.hpp"
 
@@ -17,7 +16,7 @@ using Vector = physics::Vec3<double>;
 
 // Forces on the vertices of a loaded surface. Each corner takes a third of its triangle's force, which is the area
 // vector times the pressure, or the area times the traction.
-void vertex_forces(const Load& load, double ramp, const std::vector<std::array<double, 3>>& vertices,
+void vertex_forces(const Load& load, double share, const std::vector<std::array<double, 3>>& vertices,
                    std::vector<std::array<double, 3>>& forces)
 {
   std::fill(forces.begin(), forces.end(), std::array<double, 3>{ { 0, 0, 0 } });
@@ -25,8 +24,8 @@ void vertex_forces(const Load& load, double ramp, const std::vector<std::array<d
   {
     const Vector a = vector_of(vertices[t[0]]);
     const Vector area = 0.5 * cross(vector_of(vertices[t[1]]) - a, vector_of(vertices[t[2]]) - a);
-    const Vector force = load.kind == Load::Kind::pressure ? (-ramp * load.value[0] / 3) * area
-                                                           : (ramp * norm(area) / 3) * vector_of(load.value);
+    const Vector force = load.kind == Load::Kind::pressure ? (-share * load.value[0] / 3) * area
+                                                           : (share * norm(area) / 3) * vector_of(load.value);
     for (const auto corner : t)
     {
       forces[corner][0] += force.x;
@@ -138,14 +137,15 @@ void NodalLoads<Real>::list_arrays(ArrayList& list)
 }
 
 template <class Real>
-void NodalLoads<Real>::update(double time, const Real* const u[3])
+void NodalLoads<Real>::update(double time, const std::vector<float>& activation, const Real* const u[3])
 {
   std::fill(surface_forces_.begin(), surface_forces_.end(), std::array<double, 3>{ { 0, 0, 0 } });
   for (auto& surface : surfaces_)
   {
-    if (!runs_)
-      break;
     const Load& load = *surface.load;
+    const double share = acting_share(load, time, activation);
+    if (!runs_ || share == 0)
+      continue;
     if (load.kind == Load::Kind::pressure)
       for (std::size_t vertex = 0; vertex < surface.vertices.size(); ++vertex)
       {
@@ -153,7 +153,7 @@ void NodalLoads<Real>::update(double time, const Real* const u[3])
         for (int axis = 0; axis < 3; ++axis)
           surface.vertices[vertex][axis] = load.mesh.vertices[vertex][axis] + moved[axis];
       }
-    vertex_forces(load, physics::ramped(time, load.ramp), surface.vertices, surface.vertex_force);
+    vertex_forces(load, share, surface.vertices, surface.vertex_force);
     for (std::size_t rank = 0; rank < nodes_.size(); ++rank)
       for (auto c = surface.begin[rank]; c < surface.begin[rank + 1]; ++c)
         for (int axis = 0; axis < 3; ++axis)

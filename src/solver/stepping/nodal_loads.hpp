@@ -1,5 +1,6 @@
 #pragma once
 
+#include "frontalis/physics/ramp.hpp"
 #include "solver/stepping/node_part.hpp"
 
 #include <array>
@@ -13,6 +14,12 @@ namespace frontalis
 std::vector<std::int32_t> relieved_nodes(const Model& model, const Discretisation& discretisation);
 /// The force [N] on a node of relieved_nodes() that cancels the weight of the added mass.
 std::array<double, 3> gravity_relief(const Model& model, const Discretisation& discretisation, std::int32_t node);
+
+/// Fraction of a load that acts at a time [s]: that of its ramp, or its activation.
+inline double acting_share(const Load& load, double time, const std::vector<float>& activation)
+{
+  return load.activation < 0 ? physics::ramped(time, load.ramp) : double(activation[load.activation]);
+}
 
 /// Converts tractions and follower pressures on bound surfaces to nodal forces, by the transposed binding and in a
 /// fixed order of summation. Also cancels the weight of mass that selective mass scaling has added.
@@ -30,7 +37,7 @@ public:
   void before_step(const NodeShare& share, const Real* const u[3], const ConstraintStep& step) override
   {
     if (share.thread == 0)
-      update(step.time_before, u);
+      update(step.time_before, step.activation, u);
   }
   void add_forces(const NodeShare& share, const ForceSink<Real>& sink) override;
   void account(const NodeShare& share, EnergyAccount<Real>& account, const Real* const v[3], double kick) override;
@@ -45,8 +52,8 @@ public:
   /// The forces without the correction of gravity.
   const std::vector<std::array<double, 3>>& surface_forces() const { return surface_forces_; }
 
-  /// Computes the forces at a time from the present nodal displacements.
-  void update(double time, const Real* const u[3]);
+  /// Computes the forces at a time from the present nodal displacements and the activation of each muscle.
+  void update(double time, const std::vector<float>& activation, const Real* const u[3]);
 
 private:
   struct Contribution

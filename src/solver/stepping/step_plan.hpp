@@ -13,9 +13,9 @@ namespace frontalis
 struct Conditions
 {
   EffectSet running;
-  std::array<double, 3> gravity{};  ///< acceleration for the scaled masses [m/s2]; 0 if the effect is off
-  double damping = 0;               ///< mass-proportional [1/s]
-  std::vector<float> activation;  ///< present activation of each muscle as its fibres feel it; 0 if contraction is off
+  std::array<double, 3> gravity{};   ///< acceleration for the scaled masses [m/s2]; 0 if the effect is off
+  double damping = 0;                ///< mass-proportional [1/s]
+  std::vector<float> activation;     ///< present activation of each muscle as it acts (EffectSwitches::felt)
   std::vector<RigidTransform> bone;  ///< present poses
 
   template <class Real>
@@ -49,12 +49,14 @@ struct StepPlan
   }
   ConstraintStep constraint_step(int step) const
   {
-    ConstraintStep now{ time + (step + 1) * dt, dt, time + step * dt, {}, {} };
+    ConstraintStep now{ time + (step + 1) * dt, dt, time + step * dt, {}, {}, {} };
     for (std::size_t b = 0; b < begin.bone.size(); ++b)
     {
       now.bone.push_back(interpolate(begin.bone[b], end.bone[b], fraction(step)));
       now.bone_before.push_back(interpolate(begin.bone[b], end.bone[b], fraction(step - 1)));
     }
+    now.activation.resize(begin.activation.size());
+    activation(step, now.activation.data());
     return now;
   }
 };
