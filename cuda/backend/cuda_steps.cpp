@@ -130,7 +130,7 @@ void CudaSolver::do_steps(const StepPlan& plan, StepArguments& g, int begin, int
     g.contact.blocks_beside += adds_stress() ? part->blocks_beside() : 0;
   for (int s = begin; s < end; ++s)
   {
-    device_.loads().update(u_[present_].data(), stream_);
+    device_.loads().update(g, s, u_[present_].data(), stream_);
     if (account_)
     {
       g.first = present_;

@@ -135,7 +135,10 @@ DeviceLoads::DeviceLoads(const Model& model, const Discretisation& discretisatio
   vertex_force_ = DeviceArray<double>(force);
   traction_ = std::move(force);
   if (!pressures_.empty())
+  {
     vertex_position_ = DeviceArray<double>(traction_.size());
+    node_force_ = DeviceArray<double>(3 * nodes_.size());
+  }
 }
 
 void DeviceLoads::run(EffectSet running)
@@ -150,7 +153,7 @@ void DeviceLoads::list_arrays(ArrayList& list)
 {
   const Effect effect = vertex_force_.size() > 0 ? Effect::surface_loads : Effect::gravity;
   list.add(effect, "parts of a surface's forces", begin_.bytes() + parts_.bytes() + growth_.bytes());
-  list.add(effect, "forces at vertices", vertex_force_.bytes() + vertex_position_.bytes());
+  list.add(effect, "forces at vertices", vertex_force_.bytes() + vertex_position_.bytes() + node_force_.bytes());
   list.add(Effect::gravity, "weight that mass scaling added", relief_.bytes());
   for (const Pressure& pressure : pressures_)
     list.add(effect, "surfaces", pressure.surface.bytes());
@@ -175,13 +178,18 @@ void DeviceLoads::begin(const StepPlan& plan)
   }
 }
 
-void DeviceLoads::update(const float4* u, cudaStream_t stream)
+void DeviceLoads::update(StepArguments& g, int step, const float4* u, cudaStream_t stream)
 {
+  if (!follows_)
+    return;
   for (const auto& p : pressures_)
     if (p.acts)
       require(launch_pressure(p.surface.view(), u, p.load->value[0], vertex_position_.data() + 3 * p.first_vertex,
                               vertex_force_.data() + 3 * p.first_vertex, stream),
               "forces of a pressure");
+  g.load_force = node_force_.data();
+  require(launch_node_loads(g, static_cast<std::uint32_t>(nodes_.size()), step, node_force_.data(), stream),
+          "forces of loads");
 }
 
 }  // namespace cuda

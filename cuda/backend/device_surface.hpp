@@ -62,7 +62,8 @@ public:
   void reset() override {}
   bool idle() const { return !(runs_ && vertex_force_.size() > 0) && !(relieves_ && relief_.size() > 0); }
   void list_arrays(ArrayList& list) override;
-  void update(const float4* u, cudaStream_t stream);
+  /// Finds the forces on nodes in a step of the plan, if loads follow their surfaces.
+  void update(StepArguments& g, int step, const float4* u, cudaStream_t stream);
 
 private:
   struct Pressure
@@ -82,7 +83,7 @@ private:
   std::vector<std::int32_t> nodes_;
   DeviceArray<std::int32_t> begin_;
   DeviceArray<LoadPart> parts_;
-  DeviceArray<double> vertex_force_, vertex_position_, relief_;
+  DeviceArray<double> vertex_force_, vertex_position_, node_force_, relief_;
   DeviceArray<LoadGrowth> growth_;
   std::vector<Pressure> pressures_;
 };

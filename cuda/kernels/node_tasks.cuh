@@ -22,8 +22,10 @@ static __device__ __noinline__ void add_load(const StepArguments& g, std::int32_
                                              NodeState& n)
 {
   double force[3] = { 0, 0, 0 };
-  const bool loaded = g.load_begin != nullptr;
-  for (auto l = loaded ? g.load_begin[index] : 0; loaded && l < g.load_begin[index + 1]; ++l)
+  for (int i = 0; i < 3 && g.load_force != nullptr; ++i)
+    force[i] = g.load_force[3 * index + i];
+  const bool adds = g.load_begin != nullptr && g.load_force == nullptr;
+  for (auto l = adds ? g.load_begin[index] : 0; adds && l < g.load_begin[index + 1]; ++l)
   {
     const LoadPart part = g.load_parts[l];
     const double share = part.weight * acting_share(g, part.load, at.step);

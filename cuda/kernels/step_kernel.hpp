@@ -172,7 +172,8 @@ struct StepArguments : physics::Kick<float>
   const std::int32_t* load_begin;  ///< null: no load acts
   const double* vertex_force;      ///< three per vertex, of the whole load [N]
   const LoadGrowth* load_growth;   ///< one per load
-  const double* load_relief;       ///< three per loaded node: correction of gravity for scaled mass [N]; or null
+  const double* load_force;   ///< three per loaded node: forces of surface loads [N]; null: each node adds its parts
+  const double* load_relief;  ///< three per loaded node: correction of gravity for scaled mass [N]; or null
   // Sliding nodes, on surfaces that stand still and on moving ones; those with friction come first. Samples depend on a
   // node's position only; planes and `pressing` are state.
   const physics::DistanceField* fields;

@@ -1,4 +1,5 @@
 #include "frontalis/physics/trilinear.hpp"
+#include "cuda/kernels/acting_load.cuh"
 #include "cuda/kernels/surface_kernels.hpp"
 
 namespace frontalis
@@ -72,6 +73,27 @@ __global__ void pressure_forces(const BoundSurface s, double pressure, const dou
   forces[3 * v + 2] = share * sum.z;
 }
 
+// A warp adds the parts of a node's force, of which coarse voxels have hundreds, in a fixed order.
+__global__ void node_loads(const __grid_constant__ StepArguments g, std::uint32_t count, int step, double* forces)
+{
+  const std::uint32_t i = blockIdx.x * block + threadIdx.x, n = i / warpSize, lane = i % warpSize;
+  if (n >= count)
+    return;
+  double force[3] = { 0, 0, 0 };
+  for (std::int32_t p = g.load_begin[n] + static_cast<std::int32_t>(lane); p < g.load_begin[n + 1]; p += warpSize)
+  {
+    const LoadPart part = g.load_parts[p];
+    const double share = part.weight * acting_share(g, part.load, step);
+    for (int axis = 0; axis < 3; ++axis)
+      force[axis] += share * g.vertex_force[3 * part.vertex + axis];
+  }
+  for (int apart = 1; apart < warpSize; apart *= 2)
+    for (double& component : force)
+      component += __shfl_xor_sync(0xffffffffu, component, apart);
+  if (lane < 3)
+    forces[3 * n + lane] = lane == 0 ? force[0] : lane == 1 ? force[1] : force[2];
+}
+
 __global__ void hold(const std::uint32_t* nodes, std::uint32_t count, float4* u)
 {
   const std::uint32_t n = blockIdx.x * block + threadIdx.x;
@@ -109,6 +131,15 @@ cudaError_t launch_pressure(const BoundSurface& surface, const float4* u, double
   const int count = cuda::blocks(surface.vertex_count);
   cuda::place<<<count, cuda::block, 0, stream>>>(surface, u, positions);
   cuda::pressure_forces<<<count, cuda::block, 0, stream>>>(surface, pressure, positions, forces);
+  return cudaGetLastError();
+}
+
+cudaError_t launch_node_loads(const StepArguments& arguments, std::uint32_t count, int step, double* forces,
+                              cudaStream_t stream)
+{
+  constexpr std::uint32_t warp = 32;
+  if (count > 0)
+    cuda::node_loads<<<cuda::blocks(warp * count), cuda::block, 0, stream>>>(arguments, count, step, forces);
   return cudaGetLastError();
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "cuda/kernels/step_kernel.hpp"
+
 #include <cuda_runtime_api.h>
 #include <vector_types.h>
 
@@ -28,6 +30,9 @@ cudaError_t launch_normals(const BoundSurface& surface, const float* positions, 
 /// vertex takes a third of the force on each adjacent triangle.
 cudaError_t launch_pressure(const BoundSurface& surface, const float4* u, double pressure, double* positions,
                             double* forces, cudaStream_t stream);
+/// Computes the forces of surface loads on `count` loaded nodes in a step of the plan, three per node [N].
+cudaError_t launch_node_loads(const StepArguments& arguments, std::uint32_t count, int step, double* forces,
+                              cudaStream_t stream);
 /// Sets the displacement of nodes that never move to 0.
 cudaError_t launch_hold(const std::uint32_t* nodes, std::uint32_t count, float4* u, cudaStream_t stream);
 

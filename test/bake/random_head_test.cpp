@@ -208,7 +208,7 @@ TEST(ShippedHead, HasItsLipsApartUpToTheCornersOfTheMouth)
 TEST(RandomHeads, CanBeBaked)
 {
   Scene scene = read_scene(FRONTALIS_SOURCE_DIRECTORY "/config/head.yaml");
-  const std::size_t muscles = scene.muscles.size();
+  const std::size_t muscles = scene.muscles.size() + scene.loads.size();  // each load has an activation
   std::mt19937 random(1);
   for (int n = 0; n < number_of_heads(); ++n)
   {
