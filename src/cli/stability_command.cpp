@@ -165,7 +165,7 @@ void add_stability_command(CLI::App& app)
   command->add_option("--json", options->json, "write the figures to this file");
   command->add_option("--table", options->table, "write the table to this file, as markdown");
   command->add_option("--markdown", options->markdown,
-                      "write stability.md to this folder, and its plots to its folder stability");
+                      "write stability.md, with all checks, to this folder, and plots to its folder stability");
   command->callback([options] { run_stability(*options); });
 }
 

@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 
 namespace frontalis
@@ -153,17 +152,12 @@ void write_stability(const Trials& trials, const std::string& folder)
       "A guard watches every motion, in these cases and in use. When it finds a fault, it returns to the latest good "
       "state and takes shorter steps for a while: *the guard went back*. After three tries it stops the motion with a "
       "report that names the voxel and the likely cause ([an example](#held_neighbours)).\n\n"
-      "    ./dev cli stability --only finger lips                     # some cases\n"
-      "    ./dev cli stability --all --mesh-dir DIR --markdown doc    # all in full length; writes this document\n\n"
-      "The figures are from one run of the second command where nothing else is said. `--models DIR` writes the model "
-      "of each motion. Each case has a file in test/stability with its description, sizes, times and bounds.\n\n"
+      "    ./dev cli stability --all --mesh-dir DIR --markdown FOLDER    # writes this page\n\n"
+      "`--models DIR` writes the model of each motion. Each case has a file in test/stability with its description, "
+      "sizes, times and bounds.\n\n"
       "*Worst J* is the smallest volume ratio of a voxel, *energy* the imbalance of the energy ledger, and "
       "*hourglass* the energy of hourglass modes, both over the largest term of the ledger.\n";
   out += "\n" + trials_markdown(trials);
-  // A text written by hand about runs on other machines.
-  std::ifstream elsewhere(pictures / "elsewhere.md");
-  if (elsewhere)
-    out += "\n" + std::string(std::istreambuf_iterator<char>(elsewhere), {});
   for (const auto& [hard_case, trial] : trials)
   {
     out += "\n## " + hard_case.name + "\n\n" + hard_case.text + "\n";

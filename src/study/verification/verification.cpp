@@ -87,14 +87,17 @@ struct CaseText
   std::string title, before, after;  // markdown before and after the figures
 };
 
-// The sections of text.md by the names of their cases; empty if the file is missing.
+// The sections of text.md by the names of their cases; empty if the file is missing. A section begins with the name and
+// the title of its case; what follows its second heading stands after the figures. The text above all sections, with
+// the title and the summary of the manual, has the name "".
 std::map<std::string, CaseText> read_texts(const std::string& path)
 {
   std::ifstream file(path);
   std::map<std::string, CaseText> texts;
-  CaseText ignored;  // collects the text above the first section
-  CaseText* text = &ignored;
-  std::string* part = &ignored.before;
+  if (!file)
+    return texts;
+  CaseText* text = &texts[""];
+  std::string* part = &text->before;
   for (std::string line; std::getline(file, line);)
     if (const std::size_t colon = line.find(": "); line.rfind("## ", 0) == 0 && colon != std::string::npos)
     {
@@ -129,16 +132,16 @@ void write_manual(const Findings& findings, const std::string& path)
   const auto pictures = manual.parent_path() / manual.stem();
   make_folder(pictures.string());
   const std::map<std::string, CaseText> texts = read_texts((pictures / "text.md").string());
-  std::string out =
-      "# Verification\n\n"
-      "This page compares the solver with closed forms, published figures and CalculiX. A check passes when its "
-      "error is within its bound; figures without a bound are only *shown*. The table says how many checks of each "
-      "case pass, and how much of its bound the check uses that comes closest to it. Errors and bounds in % are "
-      "relative. Long tables are folded: click on their captions.\n\n"
-      "    ./dev cli verify --only hertz shell                       # some cases\n"
-      "    ./dev cli verify --markdown doc/verification.md           # all; writes this document\n\n"
-      "The texts are from verification/text.md. The figures are from one run of the second command, or from later runs "
-      "of single cases, which renewed their sections.\n";
+  const auto summary = texts.find("");
+  const std::string out =
+      (summary == texts.end() ? "# Verification" : summary->second.before) +
+      "\n\n## All cases\n\n"
+      "A check passes when its error is within its bound; figures without a bound are only *shown*. The table says how "
+      "many checks of each case pass, and how much of its bound the check uses that comes closest to it. Errors and "
+      "bounds in % are relative. Long tables are folded: click on their captions.\n\n"
+      "    ./dev cli verify --markdown doc/verification.md           # writes this page anew\n\n"
+      "The texts are from verification/text.md. The figures are from one run of this command, or from later runs of "
+      "single cases, which renewed their sections.\n";
   Table overview({ "case", "checks", "passed", "most of a bound used [%]" });
   std::string sections;
   for (const auto& [name, finding] : findings)
