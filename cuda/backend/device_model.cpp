@@ -164,7 +164,7 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
   g.task_count = static_cast<std::uint32_t>(tasks_.size());
   g.load_parts = loads_.parts();
   g.load_begin = loads_.begin();
-  g.vertex_force = loads_.vertex_force();
+  g.surface_force = loads_.surface_force();
   g.load_growth = loads_.growth();
   g.load_relief = loads_.relief();
   g.selective_reduced = discretisation.selective_reduced;

@@ -3,7 +3,7 @@
 #include "cuda/backend/device_attachment.hpp"
 #include "cuda/backend/device_contacts.hpp"
 #include "cuda/backend/device_part.hpp"
-#include "cuda/backend/device_surface.hpp"
+#include "cuda/backend/device_loads.hpp"
 #include "cuda/backend/device_viscosity.hpp"
 #include "solver/stepping/discretisation.hpp"
 #include "cuda/kernels/step_kernel.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "frontalis/physics/ramp.hpp"
-#include "cuda/kernels/step_kernel.hpp"
+#include "cuda/kernels/activation.cuh"
 
 namespace frontalis
 {
@@ -14,9 +14,8 @@ __device__ __forceinline__ double acting_share(const StepArguments& g, std::int3
   const LoadGrowth growth = g.load_growth[load];
   if (growth.activation < 0)
     return physics::ramped(g.time + step * g.dt_exact, growth.ramp);
-  const float begin = g.activation_begin[growth.activation];
-  return begin + __fdiv_rn(static_cast<float>(step + 1), static_cast<float>(g.steps)) *
-                     (g.activation_end[growth.activation] - begin);
+  const float2 activation = activation_in_plan(g, growth.activation);
+  return activation.x + fraction_passed(g, step) * activation.y;
 }
 
 }  // namespace cuda

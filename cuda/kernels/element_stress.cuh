@@ -1,5 +1,6 @@
 #pragma once
 
+#include "cuda/kernels/activation.cuh"
 #include "cuda/kernels/palette_voxel.cuh"
 
 namespace frontalis
@@ -30,32 +31,6 @@ struct ElementPlace
   std::uint32_t muscle_word;
   std::uint32_t viscous;
 };
-
-/// Activations in a step of a plan. They change linearly from the start of the plan to its end.
-struct Activations
-{
-  /// one entry per muscle, in shared memory: value at the start of the plan, and change until its end
-  const float2* of;
-  float fraction;  ///< fraction of the plan that has passed at the end of the step
-
-  __device__ __forceinline__ float operator[](std::uint32_t muscle) const
-  {
-    const float2 activation = of[muscle];
-    return activation.x + fraction * activation.y;
-  }
-};
-
-/// Loads activations into shared memory. All threads of a block must call this function once per launch.
-__device__ __forceinline__ void load_activations(const StepArguments& g, float2* to)
-{
-  for (std::int32_t m = threadIdx.x; m < g.muscles; m += blockDim.x)
-    to[m] = make_float2(g.activation_begin[m], g.activation_end[m] - g.activation_begin[m]);
-}
-
-__device__ __forceinline__ Activations activations_at(const StepArguments& g, std::int32_t step, const float2* of)
-{
-  return { of, __fdiv_rn(static_cast<float>(step + 1), static_cast<float>(g.steps)) };
-}
 
 /// Loads the first fibre of a voxel. To avoid a branch, voxels without fibres load the first entry of the list.
 __device__ __forceinline__ void fetch_fibre(const StepArguments& g, std::uint32_t word, ElementPlace& place)

@@ -30,7 +30,7 @@ static __device__ __noinline__ void add_load(const StepArguments& g, std::int32_
     const LoadPart part = g.load_parts[l];
     const double share = part.weight * acting_share(g, part.load, at.step);
     for (int i = 0; i < 3; ++i)
-      force[i] += share * g.vertex_force[3 * part.vertex + i];
+      force[i] += share * g.surface_force[3 * part.force + i];
   }
   for (int i = 0; i < 3; ++i)
   {

@@ -44,10 +44,10 @@ __host__ __device__ inline bool has_only(const NodeTask& task, NodeEffect effect
   return true;
 }
 
-/// The part of a surface vertex's force that acts on a node.
+/// The part of a force on a loaded surface that acts on a node.
 struct LoadPart
 {
-  std::int32_t vertex;  ///< index into StepArguments::vertex_force
+  std::int32_t force;   ///< index into StepArguments::surface_force
   std::int32_t load;    ///< index into StepArguments::load_growth
   float weight;
 };
@@ -170,7 +170,7 @@ struct StepArguments : physics::Kick<float>
   std::uint32_t task_count;
   const LoadPart* load_parts;
   const std::int32_t* load_begin;  ///< null: no load acts
-  const double* vertex_force;      ///< three per vertex, of the whole load [N]
+  const double* surface_force;     ///< three per vertex of tractions, then per triangle under pressure [N]
   const LoadGrowth* load_growth;   ///< one per load
   const double* load_force;   ///< three per loaded node: forces of surface loads [N]; null: each node adds its parts
   const double* load_relief;  ///< three per loaded node: correction of gravity for scaled mass [N]; or null

@@ -1,5 +1,6 @@
 #include "frontalis/physics/trilinear.hpp"
 #include "cuda/kernels/acting_load.cuh"
+#include "cuda/kernels/launch_after.cuh"
 #include "cuda/kernels/surface_kernels.hpp"
 
 namespace frontalis
@@ -9,37 +10,58 @@ namespace cuda
 
 constexpr int block = 128;
 
-template <class Real>
-__global__ void place(const BoundSurface s, const float4* u, Real* positions)
+// A vertex of a surface, which does not change.
+struct BoundVertex
+{
+  std::uint32_t nodes[8];
+  float coordinates[3];
+  physics::Vec3<double> rest;
+};
+
+__device__ BoundVertex bound_vertex(const BoundSurface& s, std::uint32_t v)
+{
+  BoundVertex vertex;
+  for (int b = 0; b < 8; ++b)
+    vertex.nodes[b] = s.nodes[8 * v + b];
+  for (int i = 0; i < 3; ++i)
+    vertex.coordinates[i] = s.coordinates[3 * v + i];
+  vertex.rest = { s.rest[3 * v], s.rest[3 * v + 1], s.rest[3 * v + 2] };
+  return vertex;
+}
+
+__device__ physics::Vec3<double> position_of(const BoundVertex& vertex, const float4* u)
+{
+  double weight[8];
+  physics::trilinear_weights<double>(vertex.coordinates[0], vertex.coordinates[1], vertex.coordinates[2], weight);
+  physics::Vec3<double> moved{ 0, 0, 0 };
+  for (int b = 0; b < 8; ++b)
+  {
+    const float4 node = u[vertex.nodes[b]];
+    moved = moved + weight[b] * physics::Vec3<double>{ node.x, node.y, node.z };
+  }
+  return vertex.rest + moved;
+}
+
+__global__ void place(const BoundSurface s, const float4* u, float* positions)
 {
   const std::uint32_t v = blockIdx.x * block + threadIdx.x;
   if (v >= s.vertex_count)
     return;
-  double weight[8];
-  physics::trilinear_weights<double>(s.coordinates[3 * v], s.coordinates[3 * v + 1], s.coordinates[3 * v + 2], weight);
-  double moved[3] = { 0, 0, 0 };
-  for (int b = 0; b < 8; ++b)
-  {
-    const float4 node = u[s.nodes[8 * v + b]];
-    moved[0] += weight[b] * node.x;
-    moved[1] += weight[b] * node.y;
-    moved[2] += weight[b] * node.z;
-  }
-  for (int i = 0; i < 3; ++i)
-    positions[3 * v + i] = static_cast<Real>(s.rest[3 * v + i] + moved[i]);
+  const auto at = position_of(bound_vertex(s, v), u);
+  positions[3 * v] = static_cast<float>(at.x);
+  positions[3 * v + 1] = static_cast<float>(at.y);
+  positions[3 * v + 2] = static_cast<float>(at.z);
 }
 
-template <class Real>
-__device__ physics::Vec3<Real> vertex(const Real* positions, int v)
+__device__ physics::Vec3<float> vertex(const float* positions, int v)
 {
   return { positions[3 * v], positions[3 * v + 1], positions[3 * v + 2] };
 }
 
 // Twice the sum of the area vectors of the triangles around a vertex, in a fixed order.
-template <class Real>
-__device__ physics::Vec3<Real> area_around(const BoundSurface& s, const Real* positions, std::uint32_t v)
+__device__ physics::Vec3<float> area_around(const BoundSurface& s, const float* positions, std::uint32_t v)
 {
-  physics::Vec3<Real> sum{ 0, 0, 0 };
+  physics::Vec3<float> sum{ 0, 0, 0 };
   for (auto t = s.around_begin[v]; t < s.around_begin[v + 1]; ++t)
   {
     const int3 corner = s.triangles[s.around[t]];
@@ -61,22 +83,28 @@ __global__ void normals(const BoundSurface s, const float* positions, float* out
   out[3 * v + 2] = length > 0 ? sum.z / length : 0;
 }
 
-__global__ void pressure_forces(const BoundSurface s, double pressure, const double* positions, double* forces)
+__global__ void pressure_forces(const BoundSurface s, const double* pressure, const float4* u, double* forces)
 {
-  const std::uint32_t v = blockIdx.x * block + threadIdx.x;
-  if (v >= s.vertex_count)
+  let_next_kernel_start();
+  const std::uint32_t t = blockIdx.x * block + threadIdx.x;
+  const int3 corner = s.triangles[min(t, s.triangle_count - 1)];
+  const BoundVertex a = bound_vertex(s, corner.x), b = bound_vertex(s, corner.y), c = bound_vertex(s, corner.z);
+  wait_for_kernel_before();
+  if (t >= s.triangle_count)
     return;
-  const auto sum = area_around(s, positions, v);
-  const double share = -pressure / 6;
-  forces[3 * v] = share * sum.x;
-  forces[3 * v + 1] = share * sum.y;
-  forces[3 * v + 2] = share * sum.z;
+  const auto at = position_of(a, u);
+  const auto force = -pressure[t] / 6 * cross(position_of(b, u) - at, position_of(c, u) - at);
+  forces[3 * t] = force.x;
+  forces[3 * t + 1] = force.y;
+  forces[3 * t + 2] = force.z;
 }
 
 // A warp adds the parts of a node's force, of which coarse voxels have hundreds, in a fixed order.
 __global__ void node_loads(const __grid_constant__ StepArguments g, std::uint32_t count, int step, double* forces)
 {
+  let_next_kernel_start();
   const std::uint32_t i = blockIdx.x * block + threadIdx.x, n = i / warpSize, lane = i % warpSize;
+  wait_for_kernel_before();
   if (n >= count)
     return;
   double force[3] = { 0, 0, 0 };
@@ -85,7 +113,7 @@ __global__ void node_loads(const __grid_constant__ StepArguments g, std::uint32_
     const LoadPart part = g.load_parts[p];
     const double share = part.weight * acting_share(g, part.load, step);
     for (int axis = 0; axis < 3; ++axis)
-      force[axis] += share * g.vertex_force[3 * part.vertex + axis];
+      force[axis] += share * g.surface_force[3 * part.force + axis];
   }
   for (int apart = 1; apart < warpSize; apart *= 2)
     for (double& component : force)
@@ -123,24 +151,23 @@ cudaError_t launch_normals(const BoundSurface& surface, const float* positions, 
   return cudaGetLastError();
 }
 
-cudaError_t launch_pressure(const BoundSurface& surface, const float4* u, double pressure, double* positions,
-                            double* forces, cudaStream_t stream)
+cudaError_t launch_pressure(const BoundSurface& surface, const double* pressure, const float4* u, double* forces,
+                            cudaStream_t stream)
 {
-  if (surface.vertex_count == 0)
+  if (surface.triangle_count == 0)
     return cudaSuccess;
-  const int count = cuda::blocks(surface.vertex_count);
-  cuda::place<<<count, cuda::block, 0, stream>>>(surface, u, positions);
-  cuda::pressure_forces<<<count, cuda::block, 0, stream>>>(surface, pressure, positions, forces);
-  return cudaGetLastError();
+  return cuda::launch_after(cuda::pressure_forces, cuda::blocks(surface.triangle_count), cuda::block, stream, surface,
+                            pressure, u, forces);
 }
 
 cudaError_t launch_node_loads(const StepArguments& arguments, std::uint32_t count, int step, double* forces,
                               cudaStream_t stream)
 {
   constexpr std::uint32_t warp = 32;
-  if (count > 0)
-    cuda::node_loads<<<cuda::blocks(warp * count), cuda::block, 0, stream>>>(arguments, count, step, forces);
-  return cudaGetLastError();
+  if (count == 0)
+    return cudaSuccess;
+  return cuda::launch_after(cuda::node_loads, cuda::blocks(warp * count), cuda::block, stream, arguments, count, step,
+                            forces);
 }
 
 cudaError_t launch_hold(const std::uint32_t* nodes, std::uint32_t count, float4* u, cudaStream_t stream)

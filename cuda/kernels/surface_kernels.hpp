@@ -13,7 +13,7 @@ namespace frontalis
 /// A triangulated surface whose vertices are bound to voxels. Pointers are to device memory.
 struct BoundSurface
 {
-  std::uint32_t vertex_count;
+  std::uint32_t vertex_count, triangle_count;
   const std::uint32_t* nodes;  ///< eight device nodes per vertex
   const float* coordinates;    ///< three per vertex, within its voxel
   const double* rest;          ///< three per vertex [m]
@@ -26,10 +26,10 @@ struct BoundSurface
 cudaError_t launch_place(const BoundSurface& surface, const float4* u, float* positions, cudaStream_t stream);
 /// Computes unit normals from positions: the area-weighted mean over the adjacent triangles, three per vertex.
 cudaError_t launch_normals(const BoundSurface& surface, const float* positions, float* normals, cudaStream_t stream);
-/// Computes the force of a follower pressure [Pa] on each vertex at displacements `u`, in double precision [N]. A
-/// vertex takes a third of the force on each adjacent triangle.
-cudaError_t launch_pressure(const BoundSurface& surface, const float4* u, double pressure, double* positions,
-                            double* forces, cudaStream_t stream);
+/// Computes the force of a follower pressure on each vertex of each triangle at displacements `u`, in double precision,
+/// three per triangle [N]: a third of the force on the triangle. `pressure`: of each triangle [Pa].
+cudaError_t launch_pressure(const BoundSurface& surface, const double* pressure, const float4* u, double* forces,
+                            cudaStream_t stream);
 /// Computes the forces of surface loads on `count` loaded nodes in a step of the plan, three per node [N].
 cudaError_t launch_node_loads(const StepArguments& arguments, std::uint32_t count, int step, double* forces,
                               cudaStream_t stream);

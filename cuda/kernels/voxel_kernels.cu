@@ -164,7 +164,7 @@ __global__ void __launch_bounds__(block)
     const LoadPart part = g.load_parts[p];
     const double share = part.weight * acting_share(g, part.load, step);
     for (int i = 0; i < 3; ++i)
-      work += share * g.vertex_force[3 * part.vertex + i] * 0.5 * (double(g.velocity_before[i][n]) + double(g.v[i][n]));
+      work += share * g.surface_force[3 * part.force + i] * 0.5 * (double(g.velocity_before[i][n]) + double(g.v[i][n]));
   }
   account.load[l] += g.kick * work;
 }

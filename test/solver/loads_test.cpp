@@ -142,4 +142,29 @@ TEST_P(Loads, ActivationSetsThePressure)
   EXPECT_NEAR(stretch(*by_activation, activated), 1, 1e-4);
 }
 
+TEST_P(Loads, ActivationSetsThePressureWhileContractionIsOff)
+{
+  test::BlockSettings s;
+  const double pressure = 0.2 * test::shear_modulus(s);
+  Model model = loaded_block(Load::Kind::pressure, { { pressure, 0, 0 } }, s);
+  Muscle muscle;
+  muscle.name = "muscle";
+  muscle.stress_reference = test::shear_modulus(s);
+  test::add_muscle(model, { { 0, 0, 1 } }, muscle);
+  model.muscles.push_back({ "air" });
+  model.loads.back().activation = 1;
+  const auto reached = [&](const std::vector<float>& activation, bool contracts)
+  {
+    const auto solver_ = solver(model);
+    solver_->switch_effect(Effect::contraction, contracts);
+    for (int i = 0; i < 10; ++i)
+      solver_->advance(0.01, { activation, {} });
+    return stretch(*solver_, model);
+  };
+  const double by_pressure = reached({ 0, 0.7F }, true);
+  EXPECT_LT(by_pressure, 0.97);
+  EXPECT_LT(reached({ 0.5F, 0.7F }, true), by_pressure - 0.02) << "the muscle shortens the block";
+  EXPECT_NEAR(reached({ 0.5F, 0.7F }, false), by_pressure, 1e-4);
+}
+
 FRONTALIS_EVERY_BACKEND(Loads);
