@@ -1,8 +1,8 @@
 # Looks for a CUDA toolkit; sets FRONTALIS_CUDA_FOUND and, if there is one, flags and GPU architectures of the kernels.
 set(FRONTALIS_CUDA_ARCHITECTURES native CACHE STRING "GPUs to build for: native, portable, or as CMAKE_CUDA_ARCHITECTURES")
 
-# "native": the GPUs of this machine. Where there is none, or with "portable": machine code for sm_80 and sm_90, and PTX
-# of the oldest architecture from sm_75 on that the toolkit knows, which the driver compiles for every other GPU.
+# "native": the GPUs of this machine; where there is none, PTX of the oldest architecture from sm_75 on that the toolkit
+# knows, which the driver compiles for any GPU. "portable": that PTX, and machine code for sm_80 and sm_90.
 function(frontalis_gpu_architectures result)
   set(chosen ${FRONTALIS_CUDA_ARCHITECTURES})
   execute_process(COMMAND ${CMAKE_CUDA_COMPILER} --list-gpu-arch OUTPUT_VARIABLE known ERROR_QUIET)
@@ -22,8 +22,10 @@ function(frontalis_gpu_architectures result)
       endif()
     endforeach()
   endif()
-  if(NOT chosen OR chosen STREQUAL "portable")
-    list(GET known 0 oldest)
+  list(GET known 0 oldest)
+  if(NOT chosen)
+    set(chosen ${oldest}-virtual)
+  elseif(chosen STREQUAL "portable")
     set(chosen ${oldest}-virtual 80-real 90-real)
   endif()
   message(STATUS "GPU architectures: ${chosen}")
