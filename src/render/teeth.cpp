@@ -10,7 +10,6 @@ namespace frontalis
 namespace
 {
 
-constexpr std::array<float, 3> gum_colour{ { 0.78F, 0.47F, 0.45F } };
 
 // A row of teeth, from the midline to one side: positions of the borders between teeth along the row, and heights of
 // the cutting edges and of the gums' rim above the corners of the mouth [m]. They are estimates from the dimensions of

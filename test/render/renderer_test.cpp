@@ -295,6 +295,7 @@ TEST(FaceAppearance, BodiesHaveTheColourOfTeethSkinHairTongueOrMetal)
   EXPECT_EQ(core.label, body_label);
   EXPECT_GT(core.colour[2], core.colour[0]);  // bluish, as metal is
   EXPECT_EQ(body_appearance("core_jaw", false, none).colour, teeth.colour);
+  EXPECT_EQ(body_appearance("gums_above", false, none).colour, gum_colour);
   EXPECT_EQ(skin.colour, skin_appearance({}, {}, { { 0, 0, 0 } }).colours[0]);
   // hair is thin at the border of its surface, and dense where that is far away
   TriangleMesh fan;

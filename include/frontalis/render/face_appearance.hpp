@@ -12,10 +12,10 @@
 namespace frontalis
 {
 
-constexpr std::array<float, 3> teeth_colour{ { 0.93F, 0.91F, 0.84F } };
+constexpr std::array<float, 3> teeth_colour{ { 0.93F, 0.91F, 0.84F } }, gum_colour{ { 0.78F, 0.47F, 0.45F } };
 
-/// Colours of a body's vertices, and its label. A body that tissue touches looks like teeth. A body that is only shown
-/// looks like skin, or like what its name says if that is "hair" or "tongue", or like metal if its name begins with
+/// Colours of a body's vertices, and its label. A body that tissue touches looks like teeth, or like gums if its name
+/// begins with "gums". A body that is only shown looks like skin, or like what its name says if that is "hair" or "tongue", or like metal if its name begins with
 /// "core". Hair gets thinner towards the open border of its surface.
 struct BodyAppearance
 {
