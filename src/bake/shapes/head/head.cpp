@@ -106,29 +106,7 @@ Head::Head(std::shared_ptr<const HeadTemplate> head, const std::map<std::string,
   warp_.emplace(*head_, landmarks_, dimensions);
   bones_.emplace(*head_, *tree_, tissue);
   if (tissue != 1)
-  {
     usual_bones_.emplace(*head_, *tree_);
-    move_lining_with_bones();
-  }
-}
-
-void Head::move_lining_with_bones()
-{
-  constexpr double beside = 10e-3, far = 20e-3;  // [m] from the hull: as far as it, and not at all
-  std::vector<bool> moves(cage_.vertices.size(), false);
-  for (const bool lining : { true, false })
-    for (std::size_t f = 0; f < cage_.faces.size(); ++f)
-      if ((cage_.group_names[cage_.groups[f]] == "mouth") == lining)
-        for (const std::int32_t v : cage_.faces[f])
-          moves[v] = lining;
-  for (std::size_t v = 0; v < moves.size(); ++v)
-    if (moves[v])
-    {
-      Vector3d& p = cage_.vertices[v];
-      const double away = std::abs(usual_bones_->hull(p));
-      const Vector3d shift = std::clamp((far - away) / (far - beside), 0.0, 1.0) * bone_shift(p);
-      p += mirror_[v] == static_cast<std::int32_t>(v) ? Vector3d(shift[0], 0, shift[2]) : shift;
-    }
 }
 
 Vector3d Head::bone_shift(const Vector3d& p) const

@@ -91,9 +91,6 @@ public:
   Vector3d landmark(const std::string& name, bool right = false) const;
 
 private:
-  /// Moves the lining of the mouth behind the lips as the bones near it are displaced by the amount of tissue, so that
-  /// cheeks lie on the jaws in every head.
-  void move_lining_with_bones();
   TriangleMesh skin(const std::string& name, double edge) const;
   TriangleMesh eye(bool left, double edge) const;
   TriangleMesh bone(const std::string& name, double edge) const;
