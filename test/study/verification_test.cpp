@@ -66,12 +66,12 @@ TEST(Manual, HasTheTextOfEachCaseAroundItsFigures)
   const TemporaryFolder folder;
   std::filesystem::create_directories(folder / "manual");
   std::ofstream(folder / "manual/text.md")
-      << "# Texts\n\nignored\n\n## bar: A bar\n\nis *pulled*\n\n### After\n\nand let go\n";
+      << "# Bars\n\nAll hold.\n\n## bar: A bar\n\nis *pulled*\n\n### After\n\nand let go\n";
   Finding finding;
   finding.checks.absolute("length", "m", 2, 2.5, 1);
   write_manual({ { "bar", finding } }, folder / "manual.md");
   const std::string manual = text_of(folder / "manual.md");
-  EXPECT_EQ(manual.find("ignored"), std::string::npos);
+  EXPECT_EQ(manual.find("# Bars\n\nAll hold.\n\n## All cases\n"), 0u) << manual;
   const std::size_t title = manual.find("## A bar\n"), before = manual.find("is *pulled*"),
                     check = manual.find("| length | m | 2 | 2.5 | 0.5 | 1 | pass |"), after = manual.find("and let go");
   EXPECT_TRUE(title < before && before < check && check < after && after < manual.size()) << manual;
