@@ -47,8 +47,8 @@ __host__ __device__ inline bool has_only(const NodeTask& task, NodeEffect effect
 /// The part of a force on a loaded surface that acts on a node.
 struct LoadPart
 {
-  std::int32_t force;   ///< index into StepArguments::surface_force
-  std::int32_t load;    ///< index into StepArguments::load_growth
+  std::int32_t force;  ///< index into StepArguments::surface_force
+  std::int32_t load;   ///< index into StepArguments::load_growth
   float weight;
 };
 

@@ -10,7 +10,6 @@ namespace frontalis
 namespace
 {
 
-
 // A row of teeth, from the midline to one side: positions of the borders between teeth along the row, and heights of
 // the cutting edges and of the gums' rim above the corners of the mouth [m]. They are estimates from the dimensions of
 // teeth in textbooks: upper incisors reach 3.5 mm below the upper lip at rest, and the lower lip hides the lower ones.

@@ -15,8 +15,8 @@ namespace frontalis
 constexpr std::array<float, 3> teeth_colour{ { 0.93F, 0.91F, 0.84F } }, gum_colour{ { 0.78F, 0.47F, 0.45F } };
 
 /// Colours of a body's vertices, and its label. A body that tissue touches looks like teeth, or like gums if its name
-/// begins with "gums". A body that is only shown looks like skin, or like what its name says if that is "hair" or "tongue", or like metal if its name begins with
-/// "core". Hair gets thinner towards the open border of its surface.
+/// begins with "gums". A body that is only shown looks like skin, or like what its name says if that is "hair" or
+/// "tongue", or like metal if its name begins with "core". Hair gets thinner towards the open border of its surface.
 struct BodyAppearance
 {
   std::uint8_t label = 0;

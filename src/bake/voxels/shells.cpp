@@ -14,8 +14,8 @@ namespace frontalis
 namespace
 {
 
-// Edge length of triangles divided by that of voxels. The energy of a bent plate is too large by 0.2 % at 1.2, 1 % at 0.8
-// and 33 % at 0.5. Longer edges resolve short wrinkles less well (doc/wrinkles.md).
+// Edge length of triangles divided by that of voxels. The energy of a bent plate is too large by 0.2 % at 1.2, 1 % at
+// 0.8 and 33 % at 0.5. Longer edges resolve short wrinkles less well (doc/wrinkles.md).
 constexpr double edge_ratio = 1.2;
 
 // Largest distance of a vertex from its voxel, in voxel edges. Larger distances have large weights, which would shorten
