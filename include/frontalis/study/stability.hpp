@@ -75,8 +75,7 @@ std::string trial_heading();
 std::string trial_line(const StabilityCase& hard_case, const Trial& trial);
 
 /// Write trials with their cases as JSON, as a markdown table, and as a document FOLDER/stability.md with plots in
-/// FOLDER/stability/. write_stability() throws Error if a file cannot be written or gnuplot is
-/// missing.
+/// FOLDER/stability/. write_stability() throws Error if a file cannot be written or gnuplot is missing.
 using Trials = std::vector<std::pair<StabilityCase, Trial>>;
 std::string trials_json(const Trials& trials);
 std::string trials_markdown(const Trials& trials);
