@@ -43,10 +43,4 @@ void CellMeans::set_areas(const Field& area)
     add(area_, v, area[v]);
 }
 
-void CellMeans::divide_by_area(Field& sums) const
-{
-  for (std::size_t c = 0; c < sums.size(); ++c)
-    sums[c] /= std::max(area_[c], 1e-20F);
-}
-
 }  // namespace frontalis

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -25,17 +26,25 @@ public:
   /// Area that belongs to each corner of the cells [m2].
   const Field& areas() const { return area_; }
 
-  void add(Field& sums, std::size_t vertex, float value) const
+  // A Value is a number or a tensor.
+  template <class Value>
+  void add(std::vector<Value>& sums, std::size_t vertex, const Value& value) const
   {
     for (std::size_t c = 0; c < 8; ++c)
       sums[corner_[vertex][c]] += weight_[vertex][c] * value;
   }
   /// Converts sums of values times area to means.
-  void divide_by_area(Field& sums) const;
-  float at(const Field& means, std::size_t vertex) const
+  template <class Value>
+  void divide_by_area(std::vector<Value>& sums) const
   {
-    float mean = 0;
-    for (std::size_t c = 0; c < 8; ++c)
+    for (std::size_t c = 0; c < sums.size(); ++c)
+      sums[c] *= 1 / std::max(area_[c], 1e-20F);
+  }
+  template <class Value>
+  Value at(const std::vector<Value>& means, std::size_t vertex) const
+  {
+    Value mean = weight_[vertex][0] * means[corner_[vertex][0]];
+    for (std::size_t c = 1; c < 8; ++c)
       mean += weight_[vertex][c] * means[corner_[vertex][c]];
     return mean;
   }

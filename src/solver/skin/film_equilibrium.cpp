@@ -1,6 +1,6 @@
 #include "solver/skin/film_equilibrium.hpp"
 
-#include "frontalis/solver/rigid_motion.hpp"
+#include "frontalis/physics/number.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,18 +10,10 @@ namespace frontalis
 namespace
 {
 
-using Vector = physics::Vec3<double>;
-
 // Heights are computed where the film's largest compression is at least this fraction of the critical strain.
 constexpr double near_critical = 0.5;
 // The solution is found if an iteration lowers the energy by less than this fraction.
 constexpr double tolerance = 3e-4;
-
-template <class Tensor>
-float contract(const Tensor& a, const Tensor& b)
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + 2 * (a[3] * b[3] + a[4] * b[4] + a[5] * b[5]);
-}
 
 double inner(const std::vector<std::int32_t>& active, const std::vector<float>& a, const std::vector<float>& b)
 {
@@ -49,39 +41,34 @@ double first_minimum(double slope, double curvature, double third, double fourth
 }  // namespace
 
 // Finds the Green-Lagrange strain as means over cells. The gradient of positions is constant in a triangle, so that the
-// integral of F^T F is a sum over edges of squared lengths times the tensors edge_.
+// integral of F^T F is a sum over edges of squared lengths times the tensors edge_. Each end of an edge gets half of
+// its contribution.
 void FilmEquilibrium::find_strain(const std::vector<std::array<float, 3>>& vertices)
 {
-  const auto squared = [](const auto& a, const auto& b)
-  {
-    const Vector edge = vector_of(b) - vector_of(a);
-    return dot(edge, edge);
-  };
-  std::array<Field, 6> means;
-  means.fill(Field(cells_.areas().size(), 0));
+  using Vector = physics::Vec3<float>;
+  const auto scale = static_cast<float>(k_);
+  std::vector<Vector> at;
+  at.reserve(order_.size());
+  for (const std::int32_t v : order_)
+    at.push_back(scale * Vector{ vertices[v][0], vertices[v][1], vertices[v][2] });
+  strain_.assign(order_.size(), {});
   for (std::size_t v = 0; v < order_.size(); ++v)
-  {
-    const std::int32_t from = order_[v];
-    Tensor sum{};
     for (std::int32_t s = begin_[v]; s < begin_[v + 1]; ++s)
     {
-      const std::int32_t to = order_[neighbour_[s]];
-      // Each end of an edge gets half of its contribution.
-      const auto change = static_cast<float>(
-          0.25 * k_ * k_ *
-          (squared(vertices[from], vertices[to]) - squared(model_.skin.vertices[from], model_.skin.vertices[to])));
-      for (std::size_t i = 0; i < 6; ++i)
-        sum[i] += change * edge_[s][i];
+      const auto n = static_cast<std::size_t>(neighbour_[s]);
+      if (n < v)
+        continue;
+      const Vector edge = at[n] - at[v];
+      const FilmTensor half = 0.25F * (dot(edge, edge) - squared_[s]) * edge_[s];
+      strain_[v] += half;
+      strain_[n] += half;
     }
-    for (std::size_t i = 0; i < 6; ++i)
-      cells_.add(means[i], v, sum[i]);
-  }
-  for (std::size_t i = 0; i < 6; ++i)
-  {
-    cells_.divide_by_area(means[i]);
-    for (std::size_t v = 0; v < order_.size(); ++v)
-      strain_[v][i] = cells_.at(means[i], v);
-  }
+  std::vector<FilmTensor> means(cells_.areas().size());
+  for (std::size_t v = 0; v < order_.size(); ++v)
+    cells_.add(means, v, strain_[v]);
+  cells_.divide_by_area(means);
+  for (std::size_t v = 0; v < order_.size(); ++v)
+    strain_[v] = cells_.at(means, v);
 }
 
 // Finds the vertices where the film may have lines and the membrane forces on the edges there. Starts lines from the

@@ -10,6 +10,36 @@
 namespace frontalis
 {
 
+/// Symmetric tensor: xx, yy, zz, xy, xz, yz.
+struct FilmTensor
+{
+  std::array<float, 6> a{};
+
+  void operator+=(const FilmTensor& other)
+  {
+    for (std::size_t i = 0; i < a.size(); ++i)
+      a[i] += other.a[i];
+  }
+  void operator*=(float factor)
+  {
+    for (float& x : a)
+      x *= factor;
+  }
+  friend FilmTensor operator*(float factor, FilmTensor tensor)
+  {
+    tensor *= factor;
+    return tensor;
+  }
+};
+
+inline float trace(const FilmTensor& t) { return t.a[0] + t.a[1] + t.a[2]; }
+/// t : u
+inline float contract(const FilmTensor& t, const FilmTensor& u)
+{
+  return t.a[0] * u.a[0] + t.a[1] * u.a[1] + t.a[2] * u.a[2] +
+         2 * (t.a[3] * u.a[3] + t.a[4] * u.a[4] + t.a[5] * u.a[5]);
+}
+
 /// Finds the heights of a film in its region of a skin, over the surface that voxels carry, by minimising an energy
 /// with one unknown per vertex. At the border of the region, heights are 0.
 ///
@@ -40,9 +70,6 @@ public:
   int solve(const std::vector<std::array<float, 3>>& vertices, std::vector<float>& height);
 
 private:
-  // Symmetric tensor: xx, yy, zz, xy, xz, yz.
-  using Tensor = std::array<float, 6>;
-  static float trace(const Tensor& a) { return a[0] + a[1] + a[2]; }
   using Field = CellMeans::Field;
 
   // Heights, and the results of apply() for them, per vertex.
@@ -73,13 +100,14 @@ private:
   std::vector<std::int32_t> order_;              // index in the skin of each vertex in the order of this class
   std::vector<std::int32_t> begin_, neighbour_;  // neighbours of vertex v: from begin_[v] to begin_[v + 1]
   // per neighbour: weight of the edge in the operator div N grad, as a tensor to be contracted with N
-  std::vector<Tensor> edge_;
+  std::vector<FilmTensor> edge_;
+  Field squared_;                     // per neighbour: squared length of the edge at rest
   Field laplace_, membrane_;          // per neighbour: that weight for N = 1, and for the present membrane force
   Field area_, seed_;                 // per vertex
   Field crease_, crease_force_;       // per vertex: heights w0, and the force that pulls towards them
   std::vector<bool> resolved_;        // whether a vertex is inside the mesh and its edges are short enough
   std::vector<std::int32_t> active_;  // vertices that may have a height
-  std::vector<Tensor> strain_;        // per vertex
+  std::vector<FilmTensor> strain_;    // per vertex
   Field curvature_, local_;           // temporary arrays of gradient()
 };
 

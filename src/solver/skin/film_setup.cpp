@@ -20,7 +20,7 @@ using Point = physics::Vec3<double>;
 constexpr double longest_edge = 1.0 / 3;
 constexpr double seed_height = 0.05;  // root mean square of the initial heights, divided by the film's thickness
 
-std::array<float, 6> product(const Point& a, const Point& b, double scale)
+FilmTensor product(const Point& a, const Point& b, double scale)
 {
   const auto part = [&](double x) { return static_cast<float>(scale * x); };
   return { { part(a.x * b.x), part(a.y * b.y), part(a.z * b.z), part(0.5 * (a.x * b.y + a.y * b.x)),
@@ -80,7 +80,13 @@ void FilmEquilibrium::make_operators()
   std::vector<std::int32_t> rank(model_.skin.vertices.size(), -1);
   for (std::size_t v = 0; v < count; ++v)
     rank[order_[v]] = static_cast<std::int32_t>(v);
-  std::vector<std::map<std::int32_t, std::pair<Tensor, int>>> edges(count);
+  struct Edge
+  {
+    FilmTensor sum;
+    float squared = 0;
+    int triangles = 0;
+  };
+  std::vector<std::map<std::int32_t, Edge>> edges(count);
   std::vector<double> length(count, 0), area(count, 0);
   for (const auto& triangle : model_.skin.triangles)
   {
@@ -103,14 +109,14 @@ void FilmEquilibrium::make_operators()
       const Point edge = at[b] - at[a];
       const double size = std::sqrt(dot(edge, edge));
       // A gradient times twice the area is an edge turned by a right angle.
-      const Tensor weight =
+      const FilmTensor weight =
           product((1 / twice) * cross(normal, at[c] - at[b]), (1 / twice) * cross(normal, at[a] - at[c]), -0.5 / twice);
       for (const auto& [from, to] : { std::pair{ t[a], t[b] }, std::pair{ t[b], t[a] } })
       {
-        auto& [sum, triangles] = edges[from][to];
-        for (std::size_t i = 0; i < sum.size(); ++i)
-          sum[i] += weight[i];
-        ++triangles;
+        Edge& shared = edges[from][to];
+        shared.sum += weight;
+        shared.squared = static_cast<float>(k_ * k_ * size * size);
+        ++shared.triangles;
         length[from] = std::max(length[from], size);
       }
       area[t[c]] += twice / 6;
@@ -123,9 +129,10 @@ void FilmEquilibrium::make_operators()
     for (const auto& [to, edge] : edges[v])
     {
       neighbour_.push_back(to);
-      edge_.push_back(edge.first);
-      laplace_.push_back(trace(edge.first));
-      inside = inside && edge.second == 2;
+      edge_.push_back(edge.sum);
+      squared_.push_back(edge.squared);
+      laplace_.push_back(trace(edge.sum));
+      inside = inside && edge.triangles == 2;
     }
     begin_.push_back(static_cast<std::int32_t>(neighbour_.size()));
     area_.push_back(static_cast<float>(area[v] * k_ * k_));
