@@ -101,12 +101,16 @@ std::vector<std::string> label_names()
 BodyAppearance body_appearance(const std::string& name, bool only_shown, const TriangleMesh& surface)
 {
   const bool is_hair = only_shown && name == "hair", is_tongue = only_shown && name == "tongue";
-  const bool is_metal = only_shown && is_core(name), is_gum = !only_shown && name.compare(0, 4, "gums") == 0;
-  const bool is_skin = only_shown && !is_hair && !is_tongue && !is_metal;
+  const bool is_mouth = only_shown && name == "mouth", is_metal = only_shown && is_core(name),
+             is_gum = !only_shown && name.compare(0, 4, "gums") == 0;
+  const bool is_skin = only_shown && !is_hair && !is_tongue && !is_mouth && !is_metal;
   BodyAppearance look;
-  look.label = is_hair ? label_of_part(name) : static_cast<std::uint8_t>(is_skin ? skin_label : body_label);
+  look.label = is_hair    ? label_of_part(name)
+               : is_mouth ? std::uint8_t{ inside_label }
+                          : static_cast<std::uint8_t>(is_skin ? skin_label : body_label);
   look.colour = is_hair     ? hair_colour
                 : is_tongue ? tongue_colour
+                : is_mouth  ? inside_colour
                 : is_metal  ? metal_colour
                 : is_gum    ? gum_colour
                 : is_skin   ? skin_colour

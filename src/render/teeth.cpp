@@ -30,6 +30,8 @@ constexpr double arch_depth = 0.7;  // depth of the arch divided by half of its 
 constexpr double edge_thickness = 3e-3;  // [m]
 constexpr double edge_slope = 1.2;
 constexpr double deepest_cut = 6e-3;  // [m]
+// A body may fill the arch. What lies farther inwards than teeth are wide is palate or floor of the mouth.
+constexpr double incisor_width = 5e-3, molar_width = 10e-3;  // [m] from lip or cheek inwards
 
 // Splits each edge of a mesh in two, so that colours of vertices can show details that are smaller than its triangles.
 void halve(RenderMesh& mesh)
@@ -112,12 +114,13 @@ RenderMesh painted_teeth(const TriangleMesh& surface, bool lower, double corner_
     // The body ends with the teeth.
     const double inwards = half_width - std::hypot(p[1], (p[0] - front + depth) / arch_depth);
     const double cut = edge_slope * std::max(0.0, inwards - edge_thickness) * std::pow(std::cos(angle), 2);
+    const double tooth_width = molar_width + (incisor_width - molar_width) * std::pow(std::cos(angle), 2);
     const double edge = up * row.edge + 0.6e-3 * std::pow(aside, 4) + std::min(deepest_cut, cut);
     const double height = std::max(edge, up * (p[2] - corner_height));
     p[2] = static_cast<float>(corner_height + up * height);
     if (lower)
       p[0] -= static_cast<float>(overjet);
-    const bool is_gum = height > up * row.rim - papilla * aside * aside;
+    const bool is_gum = height > up * row.rim - papilla * aside * aside || inwards > tooth_width;
     const double light = is_gum ? 1 : shade + (1 - shade) * std::clamp(from_border / groove, 0.0, 1.0);
     std::array<float, 3> colour = is_gum ? gum_colour : teeth_colour;
     for (float& c : colour)
