@@ -29,16 +29,16 @@ void PosedFace::read_skin(SkinState& skin)
 
 const SkinState& PosedFace::take(const Controls& pose, double seconds, const std::function<void(double done)>& watch)
 {
-  constexpr int slices = 12;  // Ctrl-C takes effect between two slices
+  constexpr int slices = 12;  // progress is shown between two slices
+  const auto go_on = [] { return !interrupt_requested(); };
   solver_->reset();
   guard_.restart();
   const ControlCurve curve{ { 0, seconds * 2 / 3 }, { rest_controls(*model_), pose } };
   for (int slice = 1; slice <= slices; ++slice)
   {
-    guard_.advance(seconds / slices / model_->time_scaling, curve.at(seconds * slice / slices));
-    watch(double(slice) / slices);
-    if (interrupt_requested())
+    if (!guard_.advance(seconds / slices / model_->time_scaling, curve.at(seconds * slice / slices), go_on))
       throw Interrupted();
+    watch(double(slice) / slices);
   }
   // The guard checks only every few hundred steps, so that the end of the motion needs a check of its own. If this
   // check finds a fault, the guard returns to an earlier state, and the rest of the motion is repeated.
@@ -47,8 +47,8 @@ const SkinState& PosedFace::take(const Controls& pose, double seconds, const std
   {
     before = guard_.counts().rollbacks;
     guard_.check();
-    if (before != guard_.counts().rollbacks)
-      guard_.advance(end - solver_->time(), pose);
+    if (before != guard_.counts().rollbacks && !guard_.advance(end - solver_->time(), pose, go_on))
+      throw Interrupted();
   }
   read_skin(skin_);
   if (!is_finite(skin_))
