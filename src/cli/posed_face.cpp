@@ -29,16 +29,17 @@ void PosedFace::read_skin(SkinState& skin)
 
 const SkinState& PosedFace::take(const Controls& pose, double seconds, const std::function<void(double done)>& watch)
 {
-  constexpr int slices = 12;  // progress is shown between two slices
+  constexpr int slices = 12;
   const auto go_on = [] { return !interrupt_requested(); };
   solver_->reset();
   guard_.restart();
   const ControlCurve curve{ { 0, seconds * 2 / 3 }, { rest_controls(*model_), pose } };
   for (int slice = 1; slice <= slices; ++slice)
   {
-    if (!guard_.advance(seconds / slices / model_->time_scaling, curve.at(seconds * slice / slices), go_on))
-      throw Interrupted();
+    guard_.advance(seconds / slices / model_->time_scaling, curve.at(seconds * slice / slices), go_on);
     watch(double(slice) / slices);
+    if (interrupt_requested())
+      throw Interrupted();
   }
   // The guard checks only every few hundred steps, so that the end of the motion needs a check of its own. If this
   // check finds a fault, the guard returns to an earlier state, and the rest of the motion is repeated.

@@ -30,8 +30,8 @@ constexpr double imbalance_allowed = 0.2;
 // of the time step is a sign of an instability, so that a check is due at the end of that part.
 constexpr double crushed = 0.2;
 constexpr double stiffened = 0.5;
-// Steps of the search for the origin of an instability, in intervals between checks. Cautious steps are half as long,
-// and the fault may have begun before the latest good state.
+// Longest search for the origin of an instability, in intervals between checks. A part with cautious steps, which are
+// about half as long, has twice as many of them.
 constexpr int longest_search = 4;
 
 bool always() { return true; }

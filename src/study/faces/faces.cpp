@@ -104,7 +104,7 @@ std::vector<Places> play(const std::shared_ptr<const Model>& model, const std::s
   const auto go_on = [&]
   {
     if (settings.watch)
-      settings.watch(static_cast<double>(frames.size()) / count);
+      settings.watch((static_cast<double>(frames.size()) - 1) / count);
     return true;
   };
   for (int frame = 0; frame <= count; ++frame)
@@ -114,6 +114,7 @@ std::vector<Places> play(const std::shared_ptr<const Model>& model, const std::s
     solver->skin(skin);
     to_face_frame(*model, skin);
     frames.push_back(skin.landmarks);
+    go_on();
     if (frame == 0 && settings.settled)
       settings.settled({}, skin, rest);
   }
