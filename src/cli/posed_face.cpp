@@ -29,13 +29,14 @@ void PosedFace::read_skin(SkinState& skin)
 
 const SkinState& PosedFace::take(const Controls& pose, double seconds, const std::function<void(double done)>& watch)
 {
-  constexpr int slices = 12;  // Ctrl-C takes effect between two slices
+  constexpr int slices = 12;
+  const auto go_on = [] { return !interrupt_requested(); };
   solver_->reset();
   guard_.restart();
   const ControlCurve curve{ { 0, seconds * 2 / 3 }, { rest_controls(*model_), pose } };
   for (int slice = 1; slice <= slices; ++slice)
   {
-    guard_.advance(seconds / slices / model_->time_scaling, curve.at(seconds * slice / slices));
+    guard_.advance(seconds / slices / model_->time_scaling, curve.at(seconds * slice / slices), go_on);
     watch(double(slice) / slices);
     if (interrupt_requested())
       throw Interrupted();
@@ -47,8 +48,8 @@ const SkinState& PosedFace::take(const Controls& pose, double seconds, const std
   {
     before = guard_.counts().rollbacks;
     guard_.check();
-    if (before != guard_.counts().rollbacks)
-      guard_.advance(end - solver_->time(), pose);
+    if (before != guard_.counts().rollbacks && !guard_.advance(end - solver_->time(), pose, go_on))
+      throw Interrupted();
   }
   read_skin(skin_);
   if (!is_finite(skin_))

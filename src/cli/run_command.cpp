@@ -115,11 +115,9 @@ void Run::advance(double end)
     const double next = std::min(end, time + steps_per_slice * solver.time_step() * model.time_scaling);
     const Controls controls = curve.at(next);
     const double seconds = (next - time) / model.time_scaling;
-    if (guard)
-      guard->advance(seconds, controls);
-    else
-      solver.advance(seconds, controls);
-    time = next;
+    const auto go_on = [] { return !interrupt_requested(); };
+    const bool whole = guard ? guard->advance(seconds, controls, go_on) : solver.advance(seconds, controls, go_on);
+    time = whole ? next : solver.time() * model.time_scaling;
   }
 }
 

@@ -72,10 +72,10 @@ struct Runner::Implementation
   double period() const { return 1 / frame_rate; }
   /// Simulated time multiplied by Model::time_scaling, the time of activations and frames [s].
   double time() const { return solver->time() * model->time_scaling; }
-  /// Simulated duration of a slice [s]. The solver does not look at requests or at the wall clock within a slice.
+  /// Simulated duration of a slice [s]. The wall clock is not looked at within a slice.
   double slice() const;
 
-  void advance(double seconds, const Controls& controls);
+  bool advance(double seconds, const Controls& controls, const std::function<bool()>& interrupted);
   Controls controls_after(double seconds) const;
   void fail(const std::string& reason);
   void measure_cost();

@@ -53,20 +53,25 @@ void Runner::Implementation::fail(const std::string& reason)
 }
 
 // Advances the face by `seconds` of the time that time() returns. If the motion fails, the face stops until it is
-// reset.
-void Runner::Implementation::advance(double seconds, const Controls& controls)
+// reset. Returns false if the motion was ended early, because `interrupted`, which is called with the mutex held, was
+// true: an unstable motion may take minutes.
+bool Runner::Implementation::advance(double seconds, const Controls& controls, const std::function<bool()>& interrupted)
 {
   try
   {
     frontalis::set_damping(*solver, damping);
-    if (guard)
-      guard->advance(seconds / model->time_scaling, controls);
-    else
-      solver->advance(seconds / model->time_scaling, controls);
+    const auto go_on = [&]
+    {
+      const std::lock_guard<std::mutex> lock(mutex);
+      return !interrupted();
+    };
+    seconds /= model->time_scaling;
+    return guard ? guard->advance(seconds, controls, go_on) : solver->advance(seconds, controls, go_on);
   }
   catch (const Error& error)
   {
     fail(error.what());
+    return true;
   }
 }
 
@@ -179,6 +184,7 @@ void Runner::Implementation::run_frame()
                          ? time() + 1e9
                          : time() + clock.behind(Clock::now(), time(), 2 * period()) + period();
   bool has_told = false;
+  const auto interrupted = [this] { return stop || paused || reset_wanted || step_request != nullptr; };
   // A frame has one slice at the least, so that a face that steps slowly is still seen to move.
   for (bool is_first = true; !frame.failed && time() < end && (is_first || Clock::now() < deadline); is_first = false)
   {
@@ -186,7 +192,7 @@ void Runner::Implementation::run_frame()
     Controls controls;
     {
       std::unique_lock<std::mutex> lock(mutex);
-      if (stop || paused || reset_wanted || step_request != nullptr)
+      if (interrupted())
       {
         // The face stands still, so its frame must not be older than the progress that was told.
         const bool is_late = has_told && paused && !stop;
@@ -197,7 +203,7 @@ void Runner::Implementation::run_frame()
       }
       controls = controls_after(seconds);
     }
-    advance(seconds, controls);
+    advance(seconds, controls, interrupted);
     if (!frame.failed && settings.on_progress && Clock::now() - last_told > progress_period)
     {
       note_progress();
@@ -228,14 +234,16 @@ void Runner::Implementation::serve_step(StepRequest& request)
     request.error = frame.failure + "; reset first";
   const Controls begin = solver->controls();
   clock.restart(Clock::now(), time());
+  const auto interrupted = [this]
+  { return stop || reset_wanted || cancel_wanted || (settings.ends_steps && settings.ends_steps()); };
   for (double done = 0; done < request.seconds && request.error.empty();)
   {
     const double seconds = std::min(request.seconds - done, slice());
     done += seconds;
-    advance(seconds, interpolate(begin, end, std::min(1.0, done / request.seconds)));
+    const bool whole = advance(seconds, interpolate(begin, end, std::min(1.0, done / request.seconds)), interrupted);
     request.error = frame.failure;
     const std::lock_guard<std::mutex> lock(mutex);
-    if (stop || reset_wanted || cancel_wanted || (settings.ends_steps && settings.ends_steps()))
+    if (!whole || interrupted())
       request.error = ended_early;
     else if (switch_request != nullptr)
       serve_switch(*switch_request);

@@ -297,6 +297,34 @@ TEST_F(RunModel, interrupted_leaves_whole_files_and_130)
   EXPECT_EQ(json.at("frames"), skins);
 }
 
+// As the muscle begins to pull, the time step falls to a ten-millionth, so that not even the slice ends in which this
+// happens. Nothing moves, because only one node in the middle of the bar is free.
+TEST_F(RunModel, interrupted_within_an_endless_slice_ends_too)
+{
+  Model held = bar_model();
+  held.muscles[0].stress_reference = 1e18;
+  held.time_step_estimate = TimeStepEstimate::assembled;
+  held.rigid.clear();
+  for (std::size_t n = 0; n < held.nodes.size(); ++n)
+    if (held.nodes[n] != std::array<std::int32_t, 3>{ 4, 1, 1 })
+      held.rigid.push_back({ static_cast<std::int32_t>(n), -1 });
+  write_model(held, model);
+  const std::string table = folder / "activations.csv";
+  std::ofstream(table) << "time,pull\n0,0\n0.05,0\n0.45,1\n";
+  for (const char* guard : { "0", "512" })
+  {
+    const ProgramResult result = run_program({ "run", model, "--backend", "cpu", "--activations", table, "--seconds",
+                                               "0.45", "--frame-rate", "20", "--guard", guard, "--frames", frames },
+                                             frames + "/skin_0001.ply");
+    EXPECT_EQ(result.code, 130) << guard;
+    EXPECT_EQ(result.errors, "interrupted\n");
+    const nlohmann::json json = json_from(text_of(frames + "/run.json"));
+    EXPECT_EQ(json.at("complete"), false);
+    EXPECT_EQ(json.at("frames"), 3);
+    std::filesystem::remove_all(frames);
+  }
+}
+
 TEST_F(RunModel, scene_options_do_not_go_with_it)
 {
   for (const char* option : { "--mesh-dir", "--accuracy", "--voxel" })

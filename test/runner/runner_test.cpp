@@ -221,6 +221,36 @@ TEST(Runner, AStepUnderWayCanBeEnded)
   EXPECT_NEAR(runner.step(0.01).time, 0.01, 1e-12);
 }
 
+// A plane of nodes is driven through the held one, which no time step can handle. The guard goes back and takes shorter
+// steps within one slice of the step.
+TEST(Runner, AStepIsAskedToEndWhileAnUnstableMotionIsTriedAgain)
+{
+  Model crushed = *bar();
+  Load press;
+  press.name = "press";
+  press.kind = Load::Kind::displacement;
+  press.value = { { -1.5e-3, 0, 0 } };
+  press.ramp = 0.02;
+  crushed.loads.push_back(press);
+  for (const auto node : plane_of_nodes(crushed, 0, 1))
+    crushed.prescribed.push_back({ node, 0 });
+  int asked = 0;
+  RunnerSettings wanted = settings(Pace::lock_step);
+  wanted.guard = GuardSettings{ 2000, 0.5, 4, 3, 0 };
+  wanted.ends_steps = [&]
+  {
+    ++asked;
+    return false;
+  };
+  Frame last;
+  Runner runner(std::make_shared<const Model>(crushed), wanted, [&](const Frame& frame) { last = frame; });
+  EXPECT_THROW(runner.step(0.1), Error);
+  ASSERT_TRUE(last.failed);
+  EXPECT_GE(last.guard.rollbacks, 3);
+  EXPECT_GT(last.steps, 2000);
+  EXPECT_GT(asked, last.steps / 32);
+}
+
 TEST(Runner, WhatAListenerThrowsEndsTheMotionOnly)
 {
   std::atomic<bool> broken{ true };

@@ -303,11 +303,11 @@ TEST_P(Guarded, looks_for_the_fault_on_the_way_that_was_gone)
   {
     using ShownOtherwise::ShownOtherwise;
     double begin = 0, most_ahead = 0;
-    void advance(double seconds, const Controls& target) override
+    bool advance(double seconds, const Controls& target, const std::function<bool()>& go_on) override
     {
       const double due = (WrappedSolver::time() + seconds - begin) / 0.1;
       most_ahead = std::max(most_ahead, double(target.activation[0]) - due);
-      ShownOtherwise::advance(seconds, target);
+      return ShownOtherwise::advance(seconds, target, go_on);
     }
   };
   const auto model = std::make_shared<const Model>(test::scene_of(test::contraction));
@@ -319,6 +319,77 @@ TEST_P(Guarded, looks_for_the_fault_on_the_way_that_was_gone)
   EXPECT_THROW(guard.advance(0.1, full(solver, 1)), Unstable);
   EXPECT_LT(solver.most_ahead, 1e-6);
   EXPECT_GT(solver.restored, 4);
+}
+
+TEST_P(Guarded, a_motion_ends_at_once_in_a_good_state_where_it_is_told_to)
+{
+  const auto model = std::make_shared<const Model>(crushed());
+  const auto solver = make_solver(model, { GetParam(), 2 });
+  GuardSettings settings = close();
+  settings.inverted_share = 0;
+  Guard guard(*solver, model, settings);
+  bool ended = true;
+  int most = 0;
+  for (; ended; most = most + 1 + most / 8)
+  {
+    solver->reset();
+    guard.restart();
+    int calls = 0;
+    try
+    {
+      ended = !guard.advance(0.02, solver->controls(), [&] { return ++calls <= most; });
+      ASSERT_TRUE(ended) << "voxels were turned inside out";
+      ASSERT_EQ(calls, most + 1);
+      ASSERT_TRUE(solver->monitor().finite);
+      ASSERT_EQ(solver->monitor().inverted, 0);
+    }
+    catch (const Unstable&)
+    {
+      ended = false;
+    }
+  }
+  EXPECT_GT(most, 20);
+  solver->reset();
+  guard.restart();
+  EXPECT_TRUE(guard.advance(1e-3, solver->controls(), [] { return true; }));
+  EXPECT_DOUBLE_EQ(solver->time(), 1e-3);
+}
+
+// Four tries and the search begin with a restored snapshot; in the search steps are longer than they seem to be.
+TEST_P(Guarded, the_search_for_the_fault_is_short_and_ends_where_it_is_told_to)
+{
+  struct Counted : ShownOtherwise
+  {
+    using ShownOtherwise::ShownOtherwise;
+    std::int64_t steps_before = 0;
+    void restore(const Snapshot& snapshot) override
+    {
+      if (restored < 4)
+        steps_before = profile().steps;
+      ShownOtherwise::restore(snapshot);
+    }
+    double time_step() const override { return (restored == 4 ? 1000 : 1) * ShownOtherwise::time_step(); }
+    bool searches() const { return restored >= 4; }
+  };
+  const auto model = std::make_shared<const Model>(test::scene_of(test::contraction));
+  for (const bool ends : { false, true })
+  {
+    Counted solver(make_solver(model, { GetParam(), 2 }));
+    solver.from = 2e-3;
+    solver.times = 4;
+    solver.change = [](Monitor& m) { m.finite = false; };
+    GuardSettings settings = close();
+    settings.recovery = 1000;
+    Guard guard(solver, model, settings);
+    const auto go_on = [&] { return !ends || !solver.searches(); };
+    if (ends)
+      EXPECT_FALSE(guard.advance(0.1, full(solver, 1), go_on));
+    else
+      EXPECT_THROW(guard.advance(0.1, full(solver, 1), go_on), Unstable);
+    EXPECT_EQ(solver.restored, 5);
+    EXPECT_LE(solver.profile().steps - solver.steps_before, ends ? 0 : 6 * settings.interval);
+    EXPECT_LE(solver.time(), 2e-3);
+  }
 }
 
 FRONTALIS_EVERY_BACKEND(Guarded);

@@ -146,6 +146,26 @@ TEST(TimeStepper, plans_follow_one_another_from_the_begin_to_the_end)
   EXPECT_GT(activation[0], 0.24f);
 }
 
+TEST(TimeStepper, ends_a_motion_between_two_plans_where_it_is_told_to)
+{
+  Stepped s, whole;
+  EXPECT_TRUE(whole.solver.advance(0.01, contracted, [] { return true; }));
+  int calls = 0;
+  EXPECT_FALSE(s.solver.advance(0.01, contracted, [&] { return ++calls < 3; }));
+  EXPECT_EQ(calls, 3);
+  ASSERT_EQ(s.script.plans.size(), 3u);
+  EXPECT_EQ(s.solver.time(), whole.script.plans[3].time);
+  EXPECT_NEAR(s.solver.controls().activation[0], 0.25 * s.solver.time() / 0.01, 1e-6);
+  EXPECT_TRUE(s.solver.advance(0.01 - s.solver.time(), contracted));
+  EXPECT_NEAR(s.solver.time(), 0.01, 1e-12);
+  EXPECT_EQ(s.solver.controls().activation, contracted.activation);
+
+  Stepped settling;
+  calls = 0;
+  EXPECT_FALSE(settling.solver.settle(contracted, 1e-3, 1, [&](const Equilibrium&) { return ++calls < 2; }).reached);
+  EXPECT_EQ(calls, 2);
+}
+
 // In heavy tissue steps are so long that 32 of them would last longer than muscles and bones allow.
 TEST(TimeStepper, makes_short_plans_while_muscles_respond_and_bones_move)
 {

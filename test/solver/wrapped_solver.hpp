@@ -20,7 +20,10 @@ public:
   explicit WrappedSolver(std::unique_ptr<Solver> solver) : solver_(std::move(solver)) {}
 
   void reset() override { solver_->reset(); }
-  void advance(double seconds, const Controls& target) override { solver_->advance(seconds, target); }
+  bool advance(double seconds, const Controls& target, const std::function<bool()>& go_on) override
+  {
+    return solver_->advance(seconds, target, go_on);
+  }
   void check(double seconds, const Controls& target) const override { solver_->check(seconds, target); }
   Equilibrium settle(const Controls& target, double tolerance, double seconds,
                      const std::function<bool(const Equilibrium&)>& go_on) override

@@ -63,8 +63,8 @@ struct RunnerSettings
   /// Called in the runner's thread while it computes a frame, 55 times per second of wall time at the most. The frame
   /// has the present time, activations and counts of steps; all else is as in the frame handed out last.
   std::function<void(const Frame&)> on_progress{};
-  /// Called after each slice of a step() in the runner's thread. If it returns true, the step ends as if cancel_step()
-  /// had been called.
+  /// Called every few dozen time steps of a step() in the runner's thread. If it returns true, the step ends as if
+  /// cancel_step() had been called.
   std::function<bool()> ends_steps{};
 };
 

@@ -96,8 +96,10 @@ public:
 
   /// Like Solver::advance, but in parts with checks between them. After a rollback, controls change linearly from those
   /// of the snapshot to `target`. Throws Error as Solver::advance does; throws Unstable, with a good state restored,
-  /// when `tries` tries in a row have failed.
-  void advance(double seconds, const Controls& target);
+  /// when `tries` tries in a row have failed. `go_on` is also called between parts, and in the search for the origin
+  /// of an instability, which it ends too: Unstable is then not thrown. A motion that it has ended is in a good state.
+  /// It may throw; then only Solver::reset() and restart() are of use.
+  bool advance(double seconds, const Controls& target, const std::function<bool()>& go_on = {});
   /// Checks the present state. After a finding it restores a good state, or throws Unstable.
   void check();
   /// Like Solver::settle, with all checks of advance() but the check of the ledger, because settling opens a new

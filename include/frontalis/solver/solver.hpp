@@ -76,7 +76,9 @@ public:
   /// activations and bone poses change linearly to `target`; bones rotate through the smallest angle, as far as a fifth
   /// of the speed of sound in the tissue takes them. Throws Error, with the state unchanged, if the target is not
   /// finite, outside 0..1 or of the wrong length. Throws Diverged, after which only reset() and restore() are of use.
-  virtual void advance(double seconds, const Controls& target) = 0;
+  /// `go_on` is called every few dozen steps and ends the motion early by returning false, with controls as far as they
+  /// have come. Returns whether the motion has reached its end.
+  virtual bool advance(double seconds, const Controls& target, const std::function<bool()>& go_on = {}) = 0;
 
   /// Throws the Error that advance() would throw: after divergence, or for an invalid duration or target.
   virtual void check(double seconds, const Controls& target) const = 0;

@@ -30,11 +30,18 @@ constexpr double imbalance_allowed = 0.2;
 // of the time step is a sign of an instability, so that a check is due at the end of that part.
 constexpr double crushed = 0.2;
 constexpr double stiffened = 0.5;
+// Longest search for the origin of an instability, in intervals between checks. A part with cautious steps, which are
+// about half as long, has twice as many of them.
+constexpr int longest_search = 4;
+
+bool always() { return true; }
 
 }  // namespace
 
 struct Guard::Implementation
 {
+  using GoOn = std::function<bool()>;
+
   /// A state that passed a check.
   struct Good
   {
@@ -71,9 +78,9 @@ struct Guard::Implementation
   void keep(const Monitor& monitor, double imbalance);
   Instability judged(const Monitor& monitor, double imbalance, double largest) const;
   Instability check();
-  void go_back(Instability finding, const Controls& target, double end);
+  bool go_back(Instability finding, const Controls& target, double end, const GoOn& go_on);
   std::int32_t voxel_at(std::int32_t node) const;
-  InstabilityReport examined(Instability finding, const Controls& target, double end);
+  InstabilityReport examined(Instability finding, const Controls& target, double end, const GoOn& go_on);
 };
 
 void Guard::Implementation::keep(const Monitor& monitor, double imbalance)
@@ -150,8 +157,9 @@ Instability attempted(const Part& part)
 }
 
 // The first retry starts at the latest good state. If a retry fails after it has passed a check, the next retry starts
-// at the good state before that check, because the check may have overlooked the beginning of the fault.
-void Guard::Implementation::go_back(Instability finding, const Controls& target, double end)
+// at the good state before that check, because the check may have overlooked the beginning of the fault. Returns false
+// if `go_on` has ended the search for the origin of the instability, so that there is no report.
+bool Guard::Implementation::go_back(Instability finding, const Controls& target, double end, const GoOn& go_on)
 {
   if (tries > 0 && before.there)
   {
@@ -161,11 +169,13 @@ void Guard::Implementation::go_back(Instability finding, const Controls& target,
   }
   if (tries == settings.tries)
   {
-    const InstabilityReport report = examined(finding, target, end);
+    const InstabilityReport report = examined(finding, target, end, go_on);
     solver.restore(*good.snapshot);
     solver.slow_down(1);
     tries = 0;
     checked_at = steps();
+    if (!go_on())
+      return false;
     throw Unstable(report);
   }
   ++tries;
@@ -177,6 +187,7 @@ void Guard::Implementation::go_back(Instability finding, const Controls& target,
   checked_at = steps();
   good_checks = 0;
   bone_way.assign(good.bone.size(), 0);
+  return true;
 }
 
 std::int32_t Guard::Implementation::voxel_at(std::int32_t node) const
@@ -189,7 +200,8 @@ std::int32_t Guard::Implementation::voxel_at(std::int32_t node) const
 
 // Finds where the motion goes wrong. NaN and infinity spread over many voxels within a few steps. The motion is
 // therefore repeated step by step from the good state until the first voxel has them.
-InstabilityReport Guard::Implementation::examined(Instability finding, const Controls& target, double end)
+InstabilityReport Guard::Implementation::examined(Instability finding, const Controls& target, double end,
+                                                  const GoOn& go_on)
 {
   std::vector<bool> moved;
   for (std::size_t b = 0; b < target.bone.size(); ++b)
@@ -201,7 +213,9 @@ InstabilityReport Guard::Implementation::examined(Instability finding, const Con
   {
     solver.restore(*good.snapshot);
     worst = good.monitor;
-    for (int step = 0; step < 2 * settings.interval; ++step)
+    const std::int64_t last = steps() + static_cast<std::int64_t>(longest_search) * settings.interval;
+    const auto searches = [&] { return steps() < last && go_on(); };
+    while (searches())
     {
       const double left = end - solver.time();
       const double dt = std::min(solver.time_step(), left);
@@ -209,7 +223,7 @@ InstabilityReport Guard::Implementation::examined(Instability finding, const Con
       try
       {
         if (!diverged)
-          solver.advance(dt, interpolate(solver.controls(), target, dt / left));
+          solver.advance(dt, interpolate(solver.controls(), target, dt / left), searches);
       }
       catch (const Diverged&)
       {
@@ -281,15 +295,21 @@ void Guard::check()
 {
   const Instability finding = self_->check();
   if (finding != Instability::none)
-    self_->go_back(finding, self_->solver.controls(), self_->solver.time());
+    self_->go_back(finding, self_->solver.controls(), self_->solver.time(), always);
 }
 
-void Guard::advance(double seconds, const Controls& target)
+bool Guard::advance(double seconds, const Controls& target, const std::function<bool()>& go_on)
 {
   Implementation& g = *self_;
   g.solver.check(seconds, target);
   const double end = g.solver.time() + seconds;
-  for (bool done = false; !done;)
+  bool ended = false;
+  const auto goes_on = [&]
+  {
+    ended = ended || (go_on && !go_on());
+    return !ended;
+  };
+  for (bool done = false; !done && !ended;)
   {
     const double left = end - g.solver.time();
     const double part = static_cast<double>(g.checked_at + g.settings.interval - g.steps()) * g.solver.time_step();
@@ -298,17 +318,19 @@ void Guard::advance(double seconds, const Controls& target)
     {
       const Controls to = done ? target : interpolate(g.solver.controls(), target, part / left);
       const std::vector<RigidTransform> from = g.solver.controls().bone;
-      g.solver.advance(done ? left : part, to);
+      g.solver.advance(done ? left : part, to, goes_on);
       for (std::size_t m = 0; m < to.activation.size(); ++m)
         g.activation[m] = std::max({ g.activation[m], to.activation[m], g.solver.activation()[m] });
       for (std::size_t b = 0; b < to.bone.size(); ++b)
         g.bone_way[b] += farthest_way(from[b], g.solver.controls().bone[b], far_corner(*g.model));
-      return g.check_is_due() ? g.check() : Instability::none;
+      if (!done)
+        goes_on();
+      return ended || g.check_is_due() ? g.check() : Instability::none;
     };
     const Instability finding = attempted(go);
     if (finding != Instability::none)
     {
-      g.go_back(finding, target, end);
+      g.go_back(finding, target, end, goes_on);
       done = false;
     }
     else if (g.tries > 0 && g.good_checks >= g.settings.recovery)
@@ -317,6 +339,7 @@ void Guard::advance(double seconds, const Controls& target)
       g.solver.slow_down(1);
     }
   }
+  return !ended;
 }
 
 Equilibrium Guard::settle(const Controls& target, double tolerance, double seconds,
@@ -353,8 +376,8 @@ Equilibrium Guard::settle(const Controls& target, double tolerance, double secon
       return finding == Instability::none ? g.check() : finding;
     };
     finding = attempted(go);
-    if (finding != Instability::none)
-      g.go_back(finding, target, end);
+    if (finding != Instability::none && !g.go_back(finding, target, end, [&] { return !go_on || go_on({}); }))
+      break;
   }
   restart();
   return result;

@@ -145,7 +145,7 @@ void TimeStepper::check(double seconds, const Controls& target) const
     throw Error("the motion has diverged earlier: reset the solver first");
 }
 
-void TimeStepper::advance(double seconds, const Controls& asked)
+bool TimeStepper::advance(double seconds, const Controls& asked, const std::function<bool()>& go_on)
 {
   check(seconds, asked);
   const Stopwatch stopwatch(profile_.stepping);
@@ -179,8 +179,11 @@ void TimeStepper::advance(double seconds, const Controls& asked)
     if (motion_.diverged)
       throw Diverged(fmt::format("the motion diverged at {:g} s: displacements are no longer finite", motion_.time));
     controller_.observe(measured, plan.steps);
+    if (go_on && motion_.time < end && !go_on())
+      return false;
   }
   motion_.controls = target;
+  return true;
 }
 
 double TimeStepper::longest_plan(const Controls& target, double seconds) const
@@ -279,12 +282,11 @@ Equilibrium TimeStepper::settle(const Controls& target, double tolerance, double
   renew_conditions();
 
   const double begin = motion_.time;
+  Equilibrium now;
+  const auto goes_on = [&] { return !go_on || go_on(now); };
   while (!same_poses(motion_.controls.bone, target.bone) && motion_.time - begin < seconds)
-  {
-    advance(traits_.steps_per_observation * time_step(), target);
-    if (go_on && !go_on({}))
-      return {};
-  }
+    if (!advance(traits_.steps_per_observation * time_step(), target, goes_on) || !goes_on())
+      return now;
 
   NodalVectors u, f;
   displacements(u);
@@ -292,16 +294,20 @@ Equilibrium TimeStepper::settle(const Controls& target, double tolerance, double
   const int longest_window = std::max(1, steps_per_window / traits_.steps_per_observation);
   DynamicRelaxation relaxation({ tolerance, model_->damping, longest_window }, discretisation_.node_mass, begin, u, f);
   const auto forces = [this](NodalVectors& out) { internal_forces(out); };
-  while (!relaxation.result().reached && motion_.time - begin < seconds)
+  now = relaxation.result();
+  while (!now.reached && motion_.time - begin < seconds)
   {
-    advance(std::min(traits_.steps_per_observation * time_step(), seconds - (motion_.time - begin)), target);
+    const double part = std::min(traits_.steps_per_observation * time_step(), seconds - (motion_.time - begin));
+    if (!advance(part, target, goes_on))
+      break;
     displacements(u);
     relaxation.observe(motion_.time, u, forces, 1 / time_step(), motion_.time - begin >= seconds);
+    now = relaxation.result();
     conditions_.damping = relaxation.damping();
-    if (go_on && !go_on(relaxation.result()))
+    if (!goes_on())
       break;
   }
-  return relaxation.result();
+  return now;
 }
 
 void TimeStepper::set_damping(double damping)

@@ -21,7 +21,7 @@ public:
   TimeStepper(std::shared_ptr<const Model> model, const SolverSettings& settings, const MakeBackend& make_backend);
 
   void reset() override;
-  void advance(double seconds, const Controls& target) override;
+  bool advance(double seconds, const Controls& target, const std::function<bool()>& go_on = {}) override;
   void check(double seconds, const Controls& target) const override;
   Equilibrium settle(const Controls& target, double tolerance, double seconds,
                      const std::function<bool(const Equilibrium&)>& go_on) override;

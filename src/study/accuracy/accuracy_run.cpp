@@ -132,8 +132,13 @@ std::optional<VariantMotion> play_variant(const std::shared_ptr<const Model>& mo
     while (state.slices < 3 * slices_per_phase)
     {
       const double time = time_of(state.slices), next = time_of(state.slices + 1);
-      if (next > time)
-        solver->advance((next - time) / model->time_scaling, controls_at(*solver, history, next));
+      const double seconds = (next - time) / model->time_scaling;
+      // Half a slice cannot be kept. Therefore a slice is interrupted only if it takes far more steps than expected.
+      const double patience = static_cast<double>(solver->profile().steps) + 10 * seconds / solver->time_step();
+      const auto slice_goes_on = [&]
+      { return static_cast<double>(solver->profile().steps) < patience || go_on(0.8 * time / length); };
+      if (next > time && !solver->advance(seconds, controls_at(*solver, history, next), slice_goes_on))
+        return std::nullopt;
       ++state.slices;
       motion.steps = steps_before + static_cast<double>(solver->profile().steps);
       if (state.slices % slices_per_phase == 0)

@@ -48,7 +48,7 @@ std::string machine_of(const Solver& solver, int threads);
 using GoOn = std::function<bool(double done)>;
 
 /// The checkpoint from which to resume a motion, and a function that stores further ones, about one per minute of wall
-/// time and one if the motion is interrupted.
+/// time and one if the motion is interrupted between slices.
 struct Checkpoints
 {
   std::optional<VariantCheckpoint> last;

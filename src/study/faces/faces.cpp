@@ -101,17 +101,22 @@ std::vector<Places> play(const std::shared_ptr<const Model>& model, const std::s
   SkinState skin;
   const int count = static_cast<int>(std::lround(settings.seconds / frame_seconds));
   frames.reserve(static_cast<std::size_t>(count) + 1);
+  const auto go_on = [&]
+  {
+    if (settings.watch)
+      settings.watch((static_cast<double>(frames.size()) - 1) / count);
+    return true;
+  };
   for (int frame = 0; frame <= count; ++frame)
   {
     if (frame > 0)
-      guard.advance(frame_seconds / model->time_scaling, curve.at(frame * frame_seconds));
+      guard.advance(frame_seconds / model->time_scaling, curve.at(frame * frame_seconds), go_on);
     solver->skin(skin);
     to_face_frame(*model, skin);
     frames.push_back(skin.landmarks);
+    go_on();
     if (frame == 0 && settings.settled)
       settings.settled({}, skin, rest);
-    if (settings.watch)
-      settings.watch(static_cast<double>(frame) / count);
   }
   if (settings.settled)
     settings.settled(expression, skin, solver->controls());

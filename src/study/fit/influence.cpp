@@ -203,13 +203,18 @@ std::vector<VectorXd> ForwardRuns::play(const ControlCurve& curve, const std::ve
   std::vector<VectorXd> out;
   out.reserve(times.size());
   double now = 0;
+  const auto go_on = [&]
+  {
+    watch_(stage_, static_cast<double>(out.size()) / static_cast<double>(times.size()));
+    return true;
+  };
   for (const double time : times)
   {
     if (time > now)
-      guard_.advance((time - now) / model_->time_scaling, curve.at(time));
+      guard_.advance((time - now) / model_->time_scaling, curve.at(time), go_on);
     now = std::max(now, time);
     out.push_back(places());
-    watch_(stage_, static_cast<double>(out.size()) / static_cast<double>(times.size()));
+    go_on();
   }
   return out;
 }

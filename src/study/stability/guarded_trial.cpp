@@ -59,7 +59,12 @@ void GuardedTrial::advance(const Phase& phase)
   {
     // Controls change linearly in time: a part covers 1 / (number of parts left) of the remaining change.
     guard_->advance(phase.seconds / phase.parts,
-                    interpolate(solver_->controls(), phase.target, 1.0 / (phase.parts - i)));
+                    interpolate(solver_->controls(), phase.target, 1.0 / (phase.parts - i)),
+                    [&]
+                    {
+                      run_.settings.watch(double(i) / phase.parts);
+                      return true;
+                    });
     record();
     run_.settings.watch((i + 1.0) / phase.parts);
   }
