@@ -169,7 +169,7 @@ void read_head(Mapping& mapping, MeshFolder& folder, const std::vector<Surface>&
 /// Reads a muscle between curves.
 void read_muscle_shape(Mapping& mapping, Shape& shape)
 {
-  shape.thickness = read_length(mapping.required("thickness", "a length greater than 0"));
+  shape.thickness = read_length(mapping.required("thickness", "a length of at least 0"), not_negative);
   shape.ring = mapping.optional("ring").boolean(false);
   const Node curves = mapping.required("curves", "a list of at least two curves");
   const std::size_t least = shape.ring ? 3 : 2;

@@ -73,3 +73,15 @@ TEST(CutMesh, LeavesAMeshAloneThatLiesInsideOrOnTheSides)
   EXPECT_EQ(part.vertices, whole.vertices);
   EXPECT_EQ(part.triangles, whole.triangles);
 }
+
+TEST(ContinuedMesh, ReachesHalfABoxBeyondItsBorder)
+{
+  const TriangleMesh wide = continued(square(3), { 2, 2, 6 });
+  EXPECT_NEAR(area(wide), 25, 1e-12);
+  EXPECT_TRUE(bounding_box(wide).isApprox(Box(Vector3d(-1, -1, 0), Vector3d(4, 4, 0)), 1e-12));
+  // oblique to the boxes by 45 degrees, where they are wider by the root of 2
+  TriangleMesh turned = square(3);
+  for (Vector3& v : turned.vertices)
+    v = { (v[0] - v[1]) * std::sqrt(0.5), (v[0] + v[1]) * std::sqrt(0.5), 0 };
+  EXPECT_NEAR(area(continued(turned, { 2, 2, 6 })), std::pow(3 + 2 * std::sqrt(2), 2), 1e-12);
+}

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <numeric>
 #include <set>
 
@@ -41,14 +42,14 @@ Scene two_blocks(double gap, const std::string& gaps, double height = 7.3e-3)
   return scene;
 }
 
-/// A block of 24 x 12 x 12 mm with a slit from its side x = 0 to x = 12 mm at the height `z` [m].
-Scene slit_block(double z, double voxel = 3e-3, bool slit = true)
+/// A block of 24 x 12 x 12 mm with a slit from its side x = 0 to x = `end` at the height `z` [m].
+Scene slit_block(double z, double voxel = 3e-3, bool slit = true, double end = 12e-3)
 {
   Scene scene = plain_scene(voxel);
   static const TemporaryFolder folder;
-  const std::string file = folder / ("slit" + std::to_string(z) + ".obj");
+  const std::string file = folder / ("slit" + std::to_string(z) + "_" + std::to_string(1e3 * end) + ".obj");
   TriangleMesh mesh;
-  for (const double x : { -1e-3, 12e-3 })
+  for (const double x : { -1e-3, end })
     for (const double y : { -1e-3, 13e-3 })
       mesh.vertices.push_back({ x, y, z });
   mesh.triangles = { { 0, 2, 1 }, { 1, 2, 3 } };
@@ -200,6 +201,67 @@ TEST(Gaps, SlitDoublesEachNodeOnItOnce)
     for (const Model::Joint& joint : cut.joints)
       EXPECT_EQ(rest_position(cut, static_cast<std::size_t>(joint.node)),
                 rest_position(cut, static_cast<std::size_t>(joint.master)));
+  }
+}
+
+/// The least and the greatest x, over the rows of nodes along a slit, at which its sides come together [m]. A slit
+/// through voxels parts the nodes below and above it.
+std::set<double> ends_of(const Model& model)
+{
+  std::vector<std::size_t> node(model.nodes.size());
+  std::iota(node.begin(), node.end(), std::size_t{ 0 });
+  for (const Model::Joint& joint : model.joints)
+    node[static_cast<std::size_t>(joint.node)] = static_cast<std::size_t>(joint.master);
+  std::map<std::array<long, 3>, std::set<std::size_t>> at;
+  for (std::size_t n = 0; n < node.size(); ++n)
+  {
+    const Vector3 p = transformed(model.to_scene, rest_position(model, n));
+    at[{ std::lround(1e7 * p[0]), std::lround(1e7 * p[1]), std::lround(1e7 * p[2]) }].insert(node[n]);
+  }
+  std::map<std::pair<long, long>, long> parted_to;
+  for (const auto& [place, nodes] : at)
+    if (nodes.size() > 1)
+    {
+      long& to = parted_to[{ place[1], place[2] }];
+      to = std::max(to, place[0]);
+    }
+  std::set<double> ends;
+  for (const auto& row : parted_to)
+    ends.insert(1e-7 * static_cast<double>(row.second) + model.spacing[0]);
+  return ends;
+}
+
+TEST(Gaps, SlitsEndWithinHalfAVoxel)
+{
+  // the grid begins at the block's side, which is moved by a third of a voxel; slits pass through voxels or between
+  // them
+  for (const double voxel : { 3e-3, 2e-3, 1e-3 })
+    for (const double shift : { 0.0, voxel / 3 })
+      for (const double z : { 7.3e-3, 6e-3 })
+        for (const double filled : { 0.2, 0.4, 0.6, 0.8 })
+        {
+          const double end = 12e-3 + filled * voxel;
+          Scene scene = slit_block(z, voxel, true, end);
+          scene.surfaces[0] = box_surface("block", { 12e-3 - shift / 2, 6e-3, 6e-3 }, { 24e-3 + shift, 12e-3, 12e-3 });
+          const std::set<double> ends = ends_of(bake(scene));
+          SCOPED_TRACE(std::to_string(1e3 * voxel) + " mm, shifted by " + std::to_string(1e3 * shift) + ", height " +
+                       std::to_string(1e3 * z) + ", end " + std::to_string(1e3 * end));
+          ASSERT_FALSE(ends.empty());
+          EXPECT_NEAR(*ends.begin(), end, 0.5 * voxel);
+          EXPECT_NEAR(*ends.rbegin(), end, 0.5 * voxel);
+        }
+}
+
+TEST(Gaps, TissueThatASlitDoesNotReachStaysWhole)
+{
+  // the block ends 0.9 mm beyond the slit's last voxel, less than half a voxel beyond the slit
+  for (const double z : { 7.3e-3, 6e-3 })
+  {
+    Scene scene = slit_block(z, 3e-3, true, 11.8e-3);
+    scene.surfaces[0] = box_surface("block", { 6.45e-3, 6e-3, 6e-3 }, { 12.9e-3, 12e-3, 12e-3 });
+    const std::set<double> ends = ends_of(bake(scene));
+    ASSERT_EQ(ends.size(), 1u) << z;
+    EXPECT_NEAR(*ends.begin(), 12e-3, 1e-6) << z;
   }
 }
 

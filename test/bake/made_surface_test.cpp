@@ -106,6 +106,15 @@ TEST(CurvedMuscle, HasTheCrossSectionOfItsCurvesAndThickness)
   EXPECT_LT((volume.at({ 1, 0.5, 0.5 }).position - Vector3d(30e-3, 0, 0)).norm(), 1e-6);
 }
 
+TEST(CurvedMuscle, IsAnOpenSheetWithoutAThickness)
+{
+  const std::vector<std::vector<Vector3>> curves{ { { 0, -5e-3, 0 }, { 0, 5e-3, 0 } },
+                                                  { { 30e-3, -5e-3, 0 }, { 30e-3, 5e-3, 0 } } };
+  const TriangleMesh mesh = load_surface(muscle_surface(curves, 0), 1e-3).mesh;
+  EXPECT_FALSE(unbalanced_edges(mesh).empty());
+  EXPECT_NEAR(surface_area(mesh), 30e-3 * 10e-3, 1e-8);
+}
+
 /// The model of a block of fat around a muscle made of curves.
 Model baked_muscle(const Surface& surface)
 {

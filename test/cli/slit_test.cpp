@@ -33,14 +33,14 @@ SceneConstraint held(const std::string& surface, const std::string& bone)
   return out;
 }
 
-/// A block of 36 x 6 x 24 mm with a slit from its side x = 0, and landmarks on both sides of the slit.
-Scene slit_block(double voxel, double z)
+/// A block of 36 x 6 x 24 mm with a slit from its side x = 0 to `end` [m], and landmarks on both sides of the slit.
+Scene slit_block(double voxel, double z, double end = 18e-3)
 {
   Scene scene = plain_scene(voxel);
   scene.accuracy.assumed_strain = true;
   const std::string file = folder() / "opening.obj";
   TriangleMesh mesh;
-  for (const double x : { -1e-3, 18e-3 })
+  for (const double x : { -1e-3, end })
     for (const double y : { -1e-3, 7e-3 })
       mesh.vertices.push_back({ x, y, z });
   mesh.triangles = { { 0, 2, 1 }, { 1, 2, 3 } };
@@ -100,6 +100,21 @@ TEST(Slit, OpensToOneShapeAtAnyVoxelSize)
       const std::vector<double> coarse = opening(bake(slit_block(voxel, height)), "cpu");
       for (std::size_t p = 0; p < places.size(); ++p)
         EXPECT_NEAR(coarse[p], fine[p], 0.1 * fine[0]) << height << " " << voxel << " at " << places[p];
+    }
+  }
+}
+
+TEST(Slit, OpensToOneShapeIfItEndsWithinVoxels)
+{
+  // the slit crosses most of the voxels of 3 and of 2 mm in which it ends
+  for (const double end : { 17.3e-3, 17.8e-3 })
+  {
+    const std::vector<double> fine = opening(bake(slit_block(1e-3, 11.3e-3, end)), "cpu");
+    for (const double voxel : { 2e-3, 3e-3 })
+    {
+      const std::vector<double> coarse = opening(bake(slit_block(voxel, 11.3e-3, end)), "cpu");
+      for (std::size_t p = 0; p < places.size(); ++p)
+        EXPECT_NEAR(coarse[p], fine[p], 0.1 * fine[0]) << end << " " << voxel << " at " << places[p];
     }
   }
 }

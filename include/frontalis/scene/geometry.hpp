@@ -56,7 +56,7 @@ struct Shape
   /// Muscle: lines across its fibres, from the origin to the insertion; ring: loops, from the inner to the outer [m].
   std::vector<std::vector<Vector3>> curves;
   bool ring = false;
-  double thickness = 0;                  ///< of a muscle's middle [m]
+  double thickness = 0;                  ///< of a muscle's middle [m]; 0: an open sheet
   std::shared_ptr<const Surface> below;  ///< the closed surface from which depths are measured
   struct Depth
   {

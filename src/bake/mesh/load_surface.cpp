@@ -69,7 +69,7 @@ TriangleMesh make_any(const Shape& shape, double unit, double voxel)
     case Shape::Kind::head:
       return make_head(shape);
     case Shape::Kind::muscle:
-      return net_surface(curved_muscle_net(shape), shape.edge > 0 ? shape.edge : default_edge);
+      return net_surface(curved_muscle_net(shape), shape.edge > 0 ? shape.edge : default_edge, shape.thickness > 0);
     case Shape::Kind::offset:
       return make_offset(shape, load_surface(*shape.below, unit, voxel).mesh);
     default:

@@ -2,6 +2,8 @@
 
 #include <boost/functional/hash.hpp>
 
+#include <map>
+#include <set>
 #include <tuple>
 #include <unordered_map>
 
@@ -294,6 +296,50 @@ TriangleMesh cut_mesh(const TriangleMesh& mesh, const Region& region)
       part = cut(std::move(part), axis, region.upper[axis], 1);
   }
   return keep_triangles(part, std::vector<bool>(part.triangles.size(), true));
+}
+
+TriangleMesh continued(TriangleMesh mesh, const Vector3d& box_size)
+{
+  const Edges edges = unbalanced_edges(mesh);
+  const std::set<std::array<std::int32_t, 2>> border(edges.begin(), edges.end());
+  struct Corner
+  {
+    Vector3d outwards{ 0, 0, 0 };  ///< sum of the directions away from the triangles at its edges
+    double width = 0;              ///< sum of the widths of the strip there [m]
+    int edges = 0;
+    std::int32_t moved = 0;
+  };
+  std::map<std::int32_t, Corner> corner_of;
+  for (const Triangle& t : mesh.triangles)
+    for (std::size_t c = 0; c < 3; ++c)
+    {
+      const std::int32_t from = t[c], to = t[(c + 1) % 3];
+      if (border.count({ from, to }) == 0)
+        continue;
+      const Vector3d along = (vertex(mesh, to) - vertex(mesh, from)).normalized(),
+                     across = vertex(mesh, from) - vertex(mesh, t[(c + 2) % 3]);
+      const Vector3d outwards = (across - across.dot(along) * along).normalized();
+      for (const std::int32_t v : { from, to })
+      {
+        Corner& corner = corner_of[v];
+        corner.outwards += outwards;
+        corner.width += 0.5 * outwards.cwiseAbs().dot(box_size);
+        ++corner.edges;
+      }
+    }
+  for (auto& [v, corner] : corner_of)
+  {
+    // The corner moves so far that each of its edges does so by the width, but by at most twice the width.
+    const double squared = std::max(corner.outwards.squaredNorm(), 0.25 * corner.edges * corner.edges);
+    corner.moved = static_cast<std::int32_t>(mesh.vertices.size());
+    mesh.vertices.push_back(to_array(vertex(mesh, v) + corner.width / squared * corner.outwards));
+  }
+  for (const auto& [from, to] : border)
+  {
+    mesh.triangles.push_back({ to, from, corner_of[from].moved });
+    mesh.triangles.push_back({ to, corner_of[from].moved, corner_of[to].moved });
+  }
+  return mesh;
 }
 
 void add_sheet(TriangleMesh& mesh, std::int32_t n, std::int32_t m,

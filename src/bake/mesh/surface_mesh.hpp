@@ -55,6 +55,10 @@ TriangleMesh keep_triangles(const TriangleMesh& mesh, const std::vector<bool>& k
 /// the new vertices, which follow the old ones in the list.
 TriangleMesh cut_mesh(const TriangleMesh& mesh, const Region& region);
 
+/// The mesh and a strip along its border that continues each triangle there in its own plane, by half the extent of
+/// boxes of that size [m] in its direction. A closed mesh stays as it is.
+TriangleMesh continued(TriangleMesh mesh, const Vector3d& box_size);
+
 /// Adds a rectangular sheet of points at(i, j), i in 0..n, j in 0..m, as triangles whose normal is d/di x d/dj.
 /// If n is even, diagonals are mirrored about the middle column, so that a symmetric sheet has symmetric triangles.
 void add_sheet(TriangleMesh& mesh, std::int32_t n, std::int32_t m,

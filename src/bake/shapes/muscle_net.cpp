@@ -133,7 +133,7 @@ NurbsVolume volume_of(const ControlNet& net)
   return NurbsVolume({ { axis(0), axis(1), axis(2) } }, points, net.weights);
 }
 
-TriangleMesh net_surface(const ControlNet& net, double edge)
+TriangleMesh net_surface(const ControlNet& net, double edge, bool closed)
 {
   const NurbsVolume volume = volume_of(net);
   const auto at = [&](double u, double v, double w) { return volume.at({ u, v, w }).position; };
@@ -153,6 +153,8 @@ TriangleMesh net_surface(const ControlNet& net, double edge)
   { return at(net.ring && i == n ? 0 : static_cast<double>(i) / n, static_cast<double>(j) / m, k); };
   TriangleMesh mesh;
   add_sheet(mesh, n, m, [&](std::int32_t i, std::int32_t j) { return place(i, j, 1); });
+  if (!closed)
+    return mesh;
   add_sheet(mesh, m, n, [&](std::int32_t j, std::int32_t i) { return place(i, j, 0); });
   add_sheet(mesh, n, 1, [&](std::int32_t i, std::int32_t k) { return place(i, 0, k); });
   add_sheet(mesh, 1, n, [&](std::int32_t k, std::int32_t i) { return place(i, m, k); });

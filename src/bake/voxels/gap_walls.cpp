@@ -34,7 +34,7 @@ bool in_tissue(const Volumes& volumes, const Vector3d& p)
 
 }  // namespace
 
-GapWalls::GapWalls(const Volumes& volumes, const PreparedSurfaces& surfaces)
+GapWalls::GapWalls(const Volumes& volumes, const PreparedSurfaces& surfaces, const Vector3d& spacing)
 {
   const auto bit = [&](std::size_t body, double sign)
   {
@@ -64,9 +64,16 @@ GapWalls::GapWalls(const Volumes& volumes, const PreparedSurfaces& surfaces)
     tissue_.push_back(tissue);
   }
   bodies_ = walls_.size();
+  for (const PreparedSurface* const body : walls_)
+    own_.push_back(static_cast<std::int32_t>(body->mesh().triangles.size()));
   for (const Volumes::Entry& entry : volumes.entries())
     for (const std::string& name : entry.volume->slits)
-      walls_.push_back(&named_surface(surfaces, name, volumes.place(*entry.volume)));
+    {
+      const PreparedSurface& slit = named_surface(surfaces, name, volumes.place(*entry.volume));
+      slits_.push_back(std::make_unique<PreparedSurface>(name, continued(slit.mesh(), spacing)));
+      walls_.push_back(slits_.back().get());
+      own_.push_back(static_cast<std::int32_t>(slit.mesh().triangles.size()));
+    }
 }
 
 bool GapWalls::is_tissue(std::uint64_t enclosing) const
@@ -89,7 +96,7 @@ std::vector<GapWalls::Piece> GapWalls::pieces_in(const Box& box) const
     triangles.clear();
     walls_[w]->tree().gather(box, triangles);
     for (const std::int32_t t : triangles)
-      pieces.push_back({ static_cast<std::int32_t>(w), t });
+      pieces.push_back({ static_cast<std::int32_t>(w), t, t >= own_[w] });
   }
   return pieces;
 }
@@ -131,11 +138,15 @@ GapWalls::Way GapWalls::way_out(const Vector3d& p, std::uint64_t enclosing, cons
   };
   Event events[32];
   int count = 0;
+  bool beyond = false;
   for (const Piece& piece : pieces)
   {
     const TriangleMesh& mesh = walls_[piece.wall]->mesh();
     const int way = crossing(mesh, piece.triangle, p, q);
     if (way == 0)
+      continue;
+    beyond = beyond || piece.beyond;
+    if (piece.beyond)
       continue;
     if (static_cast<std::size_t>(piece.wall) >= bodies_ || count == 32)
       return Way::and_in;
@@ -154,7 +165,7 @@ GapWalls::Way GapWalls::way_out(const Vector3d& p, std::uint64_t enclosing, cons
       return Way::and_in;
     left = left || !tissue;
   }
-  return left ? Way::out : Way::inside;
+  return beyond ? Way::beyond : left ? Way::out : Way::inside;
 }
 
 double GapWalls::gap_at(const Volumes& volumes, const Vector3d& p, const Vector3d& away, double widest) const

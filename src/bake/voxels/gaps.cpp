@@ -16,7 +16,14 @@ namespace
 constexpr int points_per_edge = 6;
 constexpr double reach = 0.45;  // largest distance of points that are tested for a joint, in voxel edges
 
+using Way = GapWalls::Way;
 using Sets = boost::disjoint_sets_with_storage<>;
+
+/// Whether tissue that no pair of points joins stays whole: most of its pairs are not parted by a slit, but by the
+/// continuation beyond its border. This is so where the tissue itself ends just beyond the slit, as at the skin. In a
+/// voxel full of tissue a slit that leaves no joint crosses at least half of the pairs; two thirds that it does not
+/// cross leave a margin for chance.
+bool mostly_beyond(std::size_t beyond, std::size_t cut) { return beyond > 2 * cut; }
 
 std::uint64_t pair_of(std::uint32_t a, std::uint32_t b)
 {
@@ -73,7 +80,7 @@ void Gaps::mark(const Voxels& voxels, BakeMonitor& monitor)
                                     [](const Volume& volume) { return !volume.slits.empty(); });
   if (!thin_gaps_ && !any_slit)
     return;
-  walls_.emplace(volumes_, surfaces_);
+  walls_.emplace(volumes_, surfaces_, grid_.spacing);
   const std::vector<char> gaps = walls_->cells_with_gaps(volumes_, grid_, thin_gaps_, monitor);
   if (std::find(gaps.begin(), gaps.end(), 1) == gaps.end())
     return;
@@ -137,11 +144,25 @@ void Gaps::find_parts(Tissue& tissue) const
   const std::size_t count = tissue.points.size();
   const double near = reach * grid_.spacing.maxCoeff();
   Sets sets(count);
+  std::size_t cut = 0;
+  std::vector<std::pair<std::size_t, std::size_t>> beyond;
   for (std::size_t i = 1; i < count; ++i)
     for (std::size_t j = 0; j < i; ++j)
-      if ((tissue.points[i] - tissue.points[j]).squaredNorm() < near * near && sets.find_set(i) != sets.find_set(j) &&
-          !walls_->part(tissue.points[i], tissue.enclosing[i], tissue.points[j], tissue.pieces))
-        sets.union_set(i, j);
+      if ((tissue.points[i] - tissue.points[j]).squaredNorm() < near * near && sets.find_set(i) != sets.find_set(j))
+        switch (walls_->way_out(tissue.points[i], tissue.enclosing[i], tissue.points[j], tissue.pieces))
+        {
+          case Way::and_in:
+            ++cut;
+            break;
+          case Way::beyond:
+            beyond.emplace_back(i, j);
+            break;
+          default:
+            sets.union_set(i, j);
+        }
+  if (mostly_beyond(beyond.size(), cut))
+    for (const auto& [i, j] : beyond)
+      sets.union_set(i, j);
   // The parts are sorted by the number of samples in them, the largest number first. Points after the first `all` are
   // not samples.
   const int all = samples_ * samples_ * samples_;
@@ -185,12 +206,17 @@ void Gaps::join_to(Tissue& tissue, const Tissue& other) const
     return list;
   };
   const std::vector<std::size_t> from = points_near(tissue, box_of(other)), to = points_near(other, box_of(tissue));
+  std::size_t cut = 0, beyond = 0;
   const auto join = [&](std::size_t i, std::size_t j, const std::vector<GapWalls::Piece>& pieces)
   {
     const std::uint64_t pair = pair_of(tissue.copies[tissue.part[i]], other.copies[other.part[j]]);
-    if (std::find(tissue.joined.begin(), tissue.joined.end(), pair) == tissue.joined.end() &&
-        !walls_->part(tissue.points[i], tissue.enclosing[i], other.points[j], pieces))
+    if (std::find(tissue.joined.begin(), tissue.joined.end(), pair) != tissue.joined.end())
+      return;
+    const Way way = walls_->way_out(tissue.points[i], tissue.enclosing[i], other.points[j], pieces);
+    if (way == Way::inside || way == Way::out)
       tissue.joined.push_back(pair);
+    cut += way == Way::and_in ? 1 : 0;
+    beyond += way == Way::beyond ? 1 : 0;
   };
   bool any = false;
   for (const std::size_t i : from)
@@ -200,12 +226,10 @@ void Gaps::join_to(Tissue& tissue, const Tissue& other) const
         any = true;
         join(i, j, tissue.pieces);
       }
-  if (any)
-    return;
   // If the voxels have so little tissue that no two points are close to each other, the nearest two are tested.
   double best = std::numeric_limits<double>::max();
   std::pair<std::size_t, std::size_t> nearest;
-  for (std::size_t i = 0; i < tissue.points.size(); ++i)
+  for (std::size_t i = 0; !any && i < tissue.points.size(); ++i)
     for (std::size_t j = 0; j < other.points.size(); ++j)
       if (const double squared = (tissue.points[i] - other.points[j]).squaredNorm();
           squared < best && tissue.part[i] >= 0 && other.part[j] >= 0)
@@ -216,6 +240,8 @@ void Gaps::join_to(Tissue& tissue, const Tissue& other) const
   if (best < std::numeric_limits<double>::max())
     join(nearest.first, nearest.second,
          walls_->pieces_in(Box(tissue.points[nearest.first]).extend(other.points[nearest.second])));
+  if (tissue.copies.size() == 1 && other.copies.size() == 1 && mostly_beyond(beyond, cut))
+    tissue.joined.push_back(pair_of(tissue.copies[0], other.copies[0]));
 }
 
 std::size_t Gaps::add_copies(Voxels& voxels)
@@ -319,8 +345,8 @@ bool Gaps::extends_to(const Vector3d& centre, int flap, const Vector3d& point) c
                        const Vector3d& x = tissue->points[entry.second];
                        const double length = std::sqrt(entry.first);
                        const Vector3d end = x + std::max(0.0, 1 - tolerance / length) * (point - x);
-                       return !walls_->leaves(x, tissue->enclosing[entry.second], end,
-                                              walls_->pieces_in(Box(x).extend(end)));
+                       return walls_->way_out(x, tissue->enclosing[entry.second], end,
+                                              walls_->pieces_in(Box(x).extend(end))) == Way::inside;
                      });
 }
 
@@ -354,7 +380,8 @@ std::optional<Gaps::Owner> Gaps::owner(const Vector3d& p) const
   const auto sees = [&](const Found& f)
   {
     const Vector3d& x = f.tissue->points[f.point];
-    return !walls_->part(x, f.tissue->enclosing[f.point], p, walls_->pieces_in(Box(x).extend(p)));
+    const Way way = walls_->way_out(x, f.tissue->enclosing[f.point], p, walls_->pieces_in(Box(x).extend(p)));
+    return way == Way::inside || way == Way::out;
   };
   const auto end = found.begin() + static_cast<std::ptrdiff_t>(looks);
   const auto seen = std::find_if(found.begin(), end, sees);

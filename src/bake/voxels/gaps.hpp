@@ -11,10 +11,11 @@ namespace frontalis
 
 /// Separates the two sides of slits and of gaps that are thinner than voxels. In each voxel near a gap, two points of
 /// the tissue are joined if the line between them does not leave the tissue and no slit cuts it. Points that are joined
-/// form a part; parts of neighbouring voxels are joined by the same rule. A voxel with several parts is replaced by one
-/// voxel per part, with its own filling. Around a point of the grid, voxels that are joined form a group, and each
-/// group gets a node of its own: voxels of different groups are put in different flaps (Model::Flap), which are sets of
-/// voxels with nodes of their own.
+/// form a part; parts of neighbouring voxels are joined by the same rule. Slits count as half a voxel longer than they
+/// are, where they cross tissue themselves: so they part the voxels that they cross for the most part. A voxel with
+/// several parts is replaced by one voxel per part, with its own filling. Around a point of the grid, voxels that are
+/// joined form a group, and each group gets a node of its own: voxels of different groups are put in different flaps
+/// (Model::Flap), which are sets of voxels with nodes of their own.
 class Gaps
 {
 public:
