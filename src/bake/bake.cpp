@@ -1,5 +1,6 @@
 #include "frontalis/bake/bake.hpp"
 
+#include "bake/check_magnitudes.hpp"
 #include "bake/check_sides.hpp"
 #include "bake/fibres/fibres.hpp"
 #include "bake/size_text.hpp"
@@ -159,6 +160,7 @@ Model bake(const Scene& given, BakeReport* report, const BakeProgress& progress)
     frame.gaps = model.flaps.empty() ? nullptr : &gaps;
   }
   copy_settings(scene, frame, model);
+  check_magnitudes(scene, model, monitor);
 
   monitor.begin("fibres");
   const std::vector<MuscleFibres> fibres = find_fibres(scene, volumes, surfaces, monitor);
