@@ -1,7 +1,9 @@
 #include "frontalis/bake/bake.hpp"
 
+#include "bake/check_magnitudes.hpp"
+#include "bake/check_sides.hpp"
 #include "bake/fibres/fibres.hpp"
-#include "bake/messages.hpp"
+#include "bake/size_text.hpp"
 #include "bake/shapes/head/follow_head.hpp"
 #include "bake/voxels/contact_bodies.hpp"
 #include "bake/voxels/gaps.hpp"
@@ -9,10 +11,30 @@
 #include "bake/voxels/shells.hpp"
 #include "frontalis/model/effects.hpp"
 
+#include <set>
+
 namespace frontalis
 {
 namespace
 {
+
+constexpr double least_in_tissue = 0.4;  // share of a muscle's volume below which its place is doubtful
+
+/// Warns of surfaces that the scene cuts out of the tissue, such as bones, but that lie nowhere near it: their length
+/// unit or their place is wrong, and tissue fills the place where they should be.
+void find_surfaces_apart(const Scene& scene, const Volumes& volumes, BakeMonitor& monitor)
+{
+  const Box tissue = volumes.tissue_box();
+  std::set<std::string> told;
+  for (const Volumes::Entry& entry : volumes.entries())
+    for (const std::size_t b : entry.outside)
+    {
+      const PreparedSurface& body = volumes.body(b);
+      if (entry.volume->tissue && !body.box().intersects(tissue) && told.insert(body.name()).second)
+        monitor.warn("surface '{}' bounds no tissue: it spans {}, the tissue {}; check its place and its length unit",
+                     body.name(), box_text(body.box(), scene.unit), box_text(tissue, scene.unit));
+    }
+}
 
 /// Throws Error if a volume lies outside the tissue, and reports how much of each muscle was clipped.
 void check_volumes(const Scene& scene, const Volumes& volumes, const Voxels& voxels, BakeMonitor& monitor)
@@ -22,14 +44,22 @@ void check_volumes(const Scene& scene, const Volumes& volumes, const Voxels& vox
     const Volumes::Entry& entry = volumes.entries()[v];
     const double size = voxels.volume_size[v];
     const std::string muscle = entry.muscle < 0 ? "" : "muscle '" + scene.muscles[entry.muscle].name + "'";
+    Box extent;
+    for (const std::size_t b : entry.inside)
+      extent.extend(volumes.body(b).box());
     if (size <= 0 && entry.volume->tissue)
       throw Error(volumes.place(*entry.volume) +
                   ": is empty: no point is inside its surfaces, outside the others, at its depth and in its crop; "
                   "check these, the units and the voxel size");
     if (size <= 0)
-      throw failure("{}: {}, or is thinner than the sample spacing; check its surfaces, its crop and the voxel size",
-                    volumes.place(*entry.volume),
-                    muscle.empty() ? "no point of it lies in the tissue" : muscle + " lies wholly outside the tissue");
+      throw failure(
+          "{}: {}, or is thinner than the sample spacing{}; check its surfaces, their length units, its crop "
+          "and the voxel size",
+          volumes.place(*entry.volume),
+          muscle.empty() ? "no point of it lies in the tissue" : muscle + " lies wholly outside the tissue",
+          extent.isEmpty() ? ""
+                           : ": its surfaces span " + box_text(extent, scene.unit) + ", the tissue " +
+                                 box_text(volumes.tissue_box(), scene.unit));
     if (muscle.empty() || entry.closed_by || entry.inside.empty())
       continue;
     double whole = 0;
@@ -41,6 +71,11 @@ void check_volumes(const Scene& scene, const Volumes& volumes, const Voxels& vox
     }
     monitor.found("{}: {:.4g} cm3 in the tissue, {:.4g} cm3 by its surface ({:.0f} % clipped){}", muscle, 1e6 * size,
                   1e6 * whole, 100 * std::max(0.0, 1 - size / whole), closed ? "" : "; the surface is open");
+    if (closed && size < least_in_tissue * whole)
+      monitor.warn(
+          "{} lies in the tissue with {:.0f} % of its volume; the rest, between {}, is in bone, outside of the skin or "
+          "cut off by a depth or crop: see the table of muscles that --report prints, and check the surface",
+          muscle, 100 * size / whole, box_text(extent, scene.unit));
   }
 }
 
@@ -91,17 +126,19 @@ Model bake(const Scene& given, BakeReport* report, const BakeProgress& progress)
   const Scene scene = following_head(given);
   const bool measure = report != nullptr && report->measure_muscles;
   if (report != nullptr)
-    *report = { {}, {}, {}, measure, {} };
+    *report = { {}, {}, {}, measure, {}, {} };
   BakeMonitor monitor(report, progress);
   if (scene.accuracy.samples < 1 || scene.accuracy.samples > 32)
     throw failure("{}: accuracy: samples is {}; it must be 1 to 32", scene.file, scene.accuracy.samples);
 
   monitor.begin("surfaces");
   const auto surfaces = prepare_surfaces(scene, monitor);
+  check_sides(scene, surfaces);
   const double sample_spacing = to_vector(scene.accuracy.voxel).minCoeff() / scene.accuracy.samples;
   const Volumes volumes(scene, surfaces, sample_spacing);
   check_openings(scene, volumes);
   const Grid grid = make_grid(scene, volumes);
+  find_surfaces_apart(scene, volumes, monitor);
 
   monitor.begin("voxels");
   Model model;
@@ -123,6 +160,7 @@ Model bake(const Scene& given, BakeReport* report, const BakeProgress& progress)
     frame.gaps = model.flaps.empty() ? nullptr : &gaps;
   }
   copy_settings(scene, frame, model);
+  check_magnitudes(scene, model, monitor);
 
   monitor.begin("fibres");
   const std::vector<MuscleFibres> fibres = find_fibres(scene, volumes, surfaces, monitor);

@@ -23,6 +23,13 @@ public:
   void advance(double done);
   void finish();
   void found(const std::string& sentence);
+  /// Reports what is probably a mistake; a warning is shown without being asked for.
+  template <class... Values>
+  void warn(fmt::format_string<Values...> sentence, Values&&... values)
+  {
+    if (report_ != nullptr)
+      report_->warnings.push_back(fmt::format(sentence, std::forward<Values>(values)...));
+  }
   template <class First, class... Rest>
   void found(fmt::format_string<First, Rest...> sentence, First&& first, Rest&&... rest)
   {

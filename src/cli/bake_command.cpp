@@ -62,6 +62,8 @@ void bake_to_file(const BakeOptions& options)
   const double seconds = wall_seconds() - begin;
 
   fmt::print("{}", summary.stages);
+  for (const std::string& warning : summary.warnings)
+    fmt::print("warning  {}\n", warning);
   if (options.report)
   {
     for (const std::string& finding : summary.findings)

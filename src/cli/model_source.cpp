@@ -84,7 +84,7 @@ void keep_in_cache(const Model& model, const std::string& path, std::string& tol
 
 BakeSummary summary_of(const BakeReport& report)
 {
-  BakeSummary summary{ report.measure_muscles, {}, {}, report.findings };
+  BakeSummary summary{ report.measure_muscles, {}, {}, report.findings, report.warnings };
   for (const BakeReport::Stage& stage : report.stages)
     summary.stages +=
         fmt::format("stage    {:8.3f} s  {:6.0f} MB  {}\n", stage.seconds, stage.peak_memory / 1e6, stage.name);
@@ -153,7 +153,10 @@ Model bake_scene(const ModelSource& source, BakeSummary* summary)
                                [&](const std::string& stage, double done) { progress.update(stage, done); });
     keep_in_cache(*model, cached, of_cache);
   }
-  if (summary != nullptr)
+  if (summary == nullptr)
+    for (const std::string& warning : report.warnings)
+      fmt::print(source.progress, "warning  {}\n", warning);
+  else
   {
     *summary = summary_of(report);
     if (!of_cache.empty())

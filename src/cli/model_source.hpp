@@ -35,6 +35,7 @@ struct BakeSummary
   std::string stages;   ///< use of the cache, if there is one; seconds, peak memory and name of each stage
   std::string muscles;  ///< a table of the muscles' volumes
   std::vector<std::string> findings;
+  std::vector<std::string> warnings;  ///< bake_scene() prints them if there is no summary
 };
 
 /// Declares --mesh-dir, --accuracy and --voxel.

@@ -101,7 +101,10 @@ std::shared_ptr<const Model> FaceNode::make_model(const FaceParameters& paramete
     ROS_INFO_STREAM(name_ << ": baking " << request.scene << " with " << request.program);
     const auto log = [this](const std::string& line)
     {
-      ROS_INFO_STREAM(name_ << ": " << line);
+      if (line.rfind("warning", 0) == 0)
+        ROS_WARN_STREAM(name_ << ": " << line);
+      else
+        ROS_INFO_STREAM(name_ << ": " << line);
       const std::lock_guard<std::mutex> lock(runner_mutex_);
       loading_stage_ = "baking: " + line;
     };

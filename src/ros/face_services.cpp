@@ -142,6 +142,8 @@ bool FaceNode::on_load_scene(LoadScene::Request& request, LoadScene::Response& r
   const std::lock_guard<std::mutex> one_at_a_time(loading_mutex_);
   try
   {
+    if (request.scene.empty())
+      throw Error("scene: found nothing; must be the path of a scene file or of a baked model (.vtkhdf)");
     FaceParameters parameters = read_parameters(private_handle_);
     const bool baked = std::filesystem::path(request.scene).extension() == ".vtkhdf";
     parameters.model = baked ? request.scene : "";

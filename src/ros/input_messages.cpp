@@ -20,12 +20,14 @@ constexpr std::size_t reason_length = 400;    // longest text of a warning, sinc
 constexpr std::size_t most_points = 100'000;  // largest number of points of a trajectory
 constexpr double longest_wait = 60;           // longest time until a trajectory begins [s]
 
-void check_lengths(std::size_t names, std::size_t values, std::size_t most)
+void check_lengths(std::size_t names, std::size_t values, std::size_t most, const char* what)
 {
   if (names != values)
     throw Error(fmt::format("{} names but {} values; there must be one per name", names, values));
+  if (names > 0 && most == 0)
+    throw Error(fmt::format("the face has no {}", what));
   if (names > most)
-    throw Error(fmt::format("{} names; there are only {}", names, most));
+    throw Error(fmt::format("{} names; the face has only {} {}", names, most, what));
 }
 
 void check_duration(const char* field, double seconds)
@@ -113,7 +115,7 @@ void FaceInputs::set(const char* topic, const ros::Time& stamp, const std::vecto
   take(topic, stamp,
        [&](Runner& running, double now)
        {
-         check_lengths(names.size(), values.size(), model_->muscles.size());
+         check_lengths(names.size(), values.size(), model_->muscles.size(), "muscles");
          std::map<std::string, MuscleCommands::Course> courses;
          for (std::size_t entry = 0; entry < names.size(); ++entry)
            if (!courses.emplace(names[entry], MuscleCommands::Course{ { now, values[entry] } }).second)
@@ -140,7 +142,7 @@ void FaceInputs::on_joint_trajectory(const trajectory_msgs::JointTrajectory& mes
        [&](Runner& running, double now)
        {
          const std::vector<std::string>& names = message.joint_names;
-         check_lengths(names.size(), names.size(), model_->muscles.size());
+         check_lengths(names.size(), names.size(), model_->muscles.size(), "muscles");
          if (message.points.size() > most_points)
            throw Error(fmt::format("{} points; allowed are {}", message.points.size(), most_points));
          const double begin =
@@ -209,7 +211,7 @@ void FaceInputs::on_action_units(const ActionUnits& message)
        [&](Runner& running, double now)
        {
          // A message may name each unit, its left half and its right half.
-         check_lengths(message.name.size(), message.intensity.size(), 3 * model_->action_units.size());
+         check_lengths(message.name.size(), message.intensity.size(), 3 * model_->action_units.size(), "action units");
          std::map<std::string, double> intensities;
          for (std::size_t entry = 0; entry < message.name.size(); ++entry)
            if (!intensities.emplace(message.name[entry], message.intensity[entry]).second)
@@ -224,7 +226,7 @@ void FaceInputs::on_blendshapes(const Blendshapes& message)
   take(topic, message.header.stamp,
        [&](Runner& running, double now)
        {
-         check_lengths(message.name.size(), message.weight.size(), blendshapes_->size());
+         check_lengths(message.name.size(), message.weight.size(), blendshapes_->size(), "blendshapes");
          const std::size_t known = lacking_.size();
          take_pose(topic, running, now, blendshapes_->pose(*model_, message.name, message.weight, lacking_), {});
          if (lacking_.size() > known)
@@ -241,7 +243,7 @@ void FaceInputs::on_expression(const Expression& message)
        {
          const auto& intensity = message.intensity;
          check_lengths(message.name.size(), intensity.empty() ? message.name.size() : intensity.size(),
-                       model_->expressions.size() + 1);
+                       model_->expressions.size() + 1, "expressions");
          check_duration("onset", message.onset);
          check_duration("hold", message.hold);
          check_duration("release", message.release);

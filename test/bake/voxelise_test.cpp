@@ -175,6 +175,37 @@ TEST(Voxelise, MuscleWeightIsItsShareOfTheTissue)
   EXPECT_TRUE(clipped);
 }
 
+TEST(Voxelise, WarnsOfMusclesMostlyClippedAndOfSurfacesFarFromTheTissue)
+{
+  Scene scene = plain_scene(1e-3);
+  scene.surfaces = { box_surface("block", { 0, 0, 0 }, { 20e-3, 12e-3, 12e-3 }),
+                     box_surface("a", { 14e-3, 0, 0 }, { 20e-3, 4.6e-3, 4.6e-3 }),
+                     box_surface("bone", { 0, 0, 40e-3 }, { 5e-3, 5e-3, 5e-3 }) };
+  scene.volumes = { volume_inside("tissue", { "block" }, "fat", true),
+                    volume_inside("a", { "a" }, "muscle", false, 1) };
+  scene.volumes[0].outside = { "bone" };
+  scene.muscles = { { "a", "a", { 2, 0, 0 }, 0.3e6, false, true, 1 } };
+  BakeReport report;
+  bake(scene, &report);
+  ASSERT_EQ(report.warnings.size(), 2u);
+  EXPECT_EQ(
+      report.warnings[0].find("surface 'bone' bounds no tissue: it spans (-2.5, -2.5, 37.5) to (2.5, 2.5, 42.5) mm"),
+      0u)
+      << report.warnings[0];
+  EXPECT_EQ(report.warnings[1].find("muscle 'a' lies in the tissue with 30 % of its volume"), 0u) << report.warnings[1];
+  scene.surfaces[1] = box_surface("a", { 4e-3, 0, 0 }, { 20e-3, 4.6e-3, 4.6e-3 });
+  scene.surfaces[2] = box_surface("bone", { 0, 0, 8e-3 }, { 5e-3, 5e-3, 5e-3 });
+  bake(scene, &report);
+  EXPECT_TRUE(report.warnings.empty());
+
+  scene.materials[0].density = 1.1;
+  scene.muscles[0].cross_section = 60;
+  bake(scene, &report);
+  ASSERT_EQ(report.warnings.size(), 2u);
+  EXPECT_NE(report.warnings[0].find("density is 1.1 kg/m3, expected 100 to 20000"), std::string::npos);
+  EXPECT_NE(report.warnings[1].find("muscle 'a': cross_section is 60 m2"), std::string::npos);
+}
+
 TEST(Voxelise, SameBytesFromRunToRun)
 {
   Scene scene = plain_scene(1e-3);

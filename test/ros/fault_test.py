@@ -32,6 +32,9 @@ class Fault(unittest.TestCase):
 
     def test_scene_that_is_not_there(self):
         self.check("/no_file", "nowhere.yaml")
+        answer = rospy.ServiceProxy("/no_file/load_scene", LoadScene)(scene="")
+        self.assertFalse(answer.success)
+        self.assertIn("scene: found nothing; must be the path of a scene file", answer.message)
         scene = os.path.join(rospkg.RosPack().get_path("frontalis"), "test/ros/small.yaml")
         answer = rospy.ServiceProxy("/no_file/load_scene", LoadScene)(scene=scene)
         self.assertTrue(answer.success, answer.message)

@@ -46,6 +46,7 @@ struct BakeReport
   std::vector<MuscleVolume> muscles;  ///< muscles bounded by surfaces; filled if `measure_muscles` is set
   bool measure_muscles = false;       ///< the caller may set it before the bake; costs some seconds
   std::vector<std::string> findings;  ///< repairs, clippings and omissions, one sentence each
+  std::vector<std::string> warnings;  ///< what is probably a mistake, one sentence each
 };
 
 /// Called with the name of the stage and the proportion of it that is done, 0..1. To interrupt the bake, return false.

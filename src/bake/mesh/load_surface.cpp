@@ -12,7 +12,10 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
+#include <algorithm>
+#include <cctype>
 #include <filesystem>
+#include <fstream>
 
 namespace frontalis
 {
@@ -209,6 +212,26 @@ void describe(const MeshFaults& faults, double unit, const Found& found)
                       length_text(faults.holes.front().length, unit), place_text(faults.holes.front().centre, unit)));
 }
 
+/// What is wrong with a binary STL file that ends too early, or an empty text.
+std::string cut_off_stl(const std::string& file)
+{
+  std::ifstream stream(file, std::ios::binary);
+  std::array<char, 84> header{};  // a text of 80 bytes, then the number of triangles, the lowest byte first
+  if (!stream.read(header.data(), header.size()) || std::string(header.data(), 5) == "solid")
+    return {};
+  double triangles = 0;
+  for (std::size_t byte = 84; byte-- > 80;)
+    triangles = 256 * triangles + static_cast<unsigned char>(header[byte]);
+  stream.seekg(0, std::ios::end);
+  const auto bytes = static_cast<double>(stream.tellg()), expected = 84 + 50 * triangles;
+  if (bytes >= expected)
+    return {};
+  return fmt::format(
+      "its header announces {:.0f} triangles, as STL {:.0f} bytes, but it has {:.0f}: it was cut off, or is "
+      "no STL file; copy or export it again",
+      triangles, expected, bytes);
+}
+
 }  // namespace
 
 TriangleMesh import_mesh(const std::string& file, double unit)
@@ -222,6 +245,11 @@ TriangleMesh import_mesh(const std::string& file, double unit)
   const std::string no_triangles = ": has no triangles; it must hold a surface, not points or lines";
   if (scene == nullptr && std::string(importer.GetErrorString()).find("No meshes remaining") != std::string::npos)
     throw Error("mesh file " + file + no_triangles);
+  std::string extension = std::filesystem::path(file).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  if (const std::string cut_off = scene == nullptr && extension == ".stl" ? cut_off_stl(file) : ""; !cut_off.empty())
+    throw Error("mesh file " + file + ": " + cut_off);
   if (scene == nullptr)
     throw Error("mesh file " + file + ": cannot be read as a mesh (" + importer.GetErrorString() +
                 "); it must hold triangles or quads, for example as OBJ, STL or PLY");

@@ -1,6 +1,8 @@
 #include "frontalis/error.hpp"
 #include "bake/mesh/surface.hpp"
 
+#include <fmt/format.h>
+
 namespace frontalis
 {
 namespace
@@ -120,6 +122,15 @@ void require(bool good, const std::string& what)
 TriangleMesh make_shape(const Shape& shape)
 {
   const Vector3& s = shape.size;
+  // Finer shapes would have tens of millions of triangles.
+  constexpr double most_edges = 1000;
+  const double longest = std::max(
+      { s[0], s[1], s[2], shape.length, 2 * pi * (std::max(shape.radius, 0.0) + std::max(shape.minor_radius, 0.0)) });
+  if (shape.edge > 0 && longest > most_edges * shape.edge)
+    throw Error(
+        fmt::format("'edge' is {:.3g} mm for a shape {:.3g} mm long or around; at most {} edges are possible: use "
+                    "a longer one",
+                    1e3 * shape.edge, 1e3 * longest, most_edges));
   switch (shape.kind)
   {
     case Shape::Kind::box:

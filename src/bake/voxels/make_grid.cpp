@@ -1,5 +1,5 @@
 #include "frontalis/error.hpp"
-#include "bake/messages.hpp"
+#include "bake/size_text.hpp"
 #include "bake/voxels/voxelise.hpp"
 
 #include <fstream>
@@ -62,20 +62,6 @@ double available_memory()
   return std::min(system, group);
 }
 
-/// Suggests a length unit with which the tissue would have the size of a face or of a part of a face.
-std::string unit_advice(double extent, double unit)
-{
-  for (const double other : { 1e-3, 1.0, 1e-2, 1e-6, 0.0254 })
-  {
-    const double size = extent / unit * other;
-    if (other != unit && size > 0.02 && size < 0.6)
-      return fmt::format(
-          ": with 'unit: {}' it would span {}, as a face does; check the length units of the scene and of its files",
-          unit_text(other), length_text(size, 1e-3));
-  }
-  return ": check the voxel size, the crop, and the length units of the scene and of its files";
-}
-
 std::string number_text(double count)
 {
   return count < 1e6 ? fmt::format("{:.0f}", count) : fmt::format("{:.3g}", count);
@@ -98,7 +84,11 @@ Grid make_grid(const Scene& scene, const Volumes& volumes)
     return fmt::format("{:.4g} x {:.4g} x {:.4g} {}", v[0], v[1], v[2], unit_text(scene.unit));
   };
   const std::string spans = scene.file + ": the tissue spans " + edges_text(extent) + ", which is ";
-  const std::string advice = unit_advice(extent.maxCoeff(), scene.unit);
+  const std::string unit = unit_advice(extent.maxCoeff(), scene.unit);
+  const std::string advice = unit.empty()
+                                 ? ": check the voxel size, the crop, and the length units of the scene and of "
+                                   "its files"
+                                 : ": " + unit + "; check the length units of the scene and of its files";
   if (count < least_voxels)
     throw failure("{}{} {} of {}; at least {} are needed{}", spans, number_text(count), count == 1 ? "voxel" : "voxels",
                   edges_text(spacing), least_voxels, advice);

@@ -1,6 +1,6 @@
 #include "bake/voxels/volumes.hpp"
 
-#include "bake/messages.hpp"
+#include "bake/size_text.hpp"
 
 namespace frontalis
 {
@@ -116,28 +116,61 @@ std::string Volumes::place(const Volume& volume) const { return place_in_scene(*
 
 Box Volumes::bounds_of(const Entry& entry) const
 {
-  Box bounds = to_box(entry.volume->crop);
+  struct Bound
+  {
+    std::string what;
+    Box box;
+    const PreparedSurface* surface = nullptr;
+    bool of_many = false;  // a surface of which one is enough
+  };
+  std::vector<Bound> given{ { "its crop is", to_box(entry.volume->crop) } };
+  const auto add_surface = [&given](const std::string& text, const PreparedSurface& surface, double reach, bool of_many)
+  {
+    const Vector3d margin = Vector3d::Constant(reach);
+    given.push_back({ fmt::format("{} '{}' is", text, surface.name()),
+                      Box(surface.box().min() - margin, surface.box().max() + margin), &surface, of_many });
+  };
   if (entry.closed_by)
-    bounds = bounds.intersection(body(*entry.closed_by).box());
-  Box inside;
+    add_surface("what closes it,", body(*entry.closed_by), 0, false);
   for (const std::size_t b : entry.inside)
-    inside.extend(body(b).box());
+    add_surface("surface", body(b), 0, true);
+  if (entry.within)
+    add_surface("the range of depths below surface", *depth_fields_[*entry.within].surface, entry.reach(), false);
+
+  // A point lies in one of the surfaces that the volume is inside of, and within all other bounds.
+  Box bounds = to_box(entry.volume->crop), inside;
+  for (const Bound& bound : given)
+    if (bound.of_many)
+      inside.extend(bound.box);
+    else
+      bounds = bounds.intersection(bound.box);
   if (!entry.inside.empty())
     bounds = bounds.intersection(inside);
-  if (entry.within)
-  {
-    const Box& box = depth_fields_[*entry.within].surface->box();
-    const Vector3d reach = Vector3d::Constant(entry.reach());
-    bounds = bounds.intersection(Box(box.min() - reach, box.max() + reach));
-  }
   if (!bounds.min().allFinite() || !bounds.max().allFinite())
     throw Error(place(*entry.volume) + ": has no bounds; give 'inside', 'closed_by' or 'within'");
   for (int a = 0; a < 3; ++a)
-    if (bounds.min()[a] >= bounds.max()[a])
-      throw failure(
-          "{}: is empty: its surfaces, depths and crop share no point along {}; a surface is flat there, or a "
-          "crop or a length unit is wrong",
-          place(*entry.volume), "xyz"[a]);
+  {
+    if (bounds.min()[a] < bounds.max()[a])
+      continue;
+    std::vector<std::string> ranges;
+    std::string advice;
+    for (const Bound& bound : given)
+    {
+      const double lower = bound.box.min()[a], upper = bound.box.max()[a];
+      const auto text = [&](double x) { return std::isfinite(x) ? fmt::format("{:.4g}", x / scene_->unit) : "any"; };
+      if (std::isfinite(lower) || std::isfinite(upper))
+        ranges.push_back(fmt::format("{} {} to {}", bound.what, text(lower), text(upper)));
+      const double extent = bound.surface == nullptr ? 0 : bound.surface->box().sizes().maxCoeff();
+      const std::string unit = unit_advice(extent, scene_->unit);
+      if (extent > 0 && advice.empty() && !unit.empty())
+        advice =
+            fmt::format("surface '{}' spans {}: {}; ", bound.surface->name(), length_text(extent, scene_->unit), unit);
+    }
+    throw failure(
+        "{}: is empty: along {}, in {}, {}, which leaves nothing; {}check the crop, and the length units and "
+        "axes of the scene and of its files",
+        place(*entry.volume), "xyz"[a], unit_text(scene_->unit), fmt::join(ranges, ", "), advice);
+  }
   return bounds;
 }
 

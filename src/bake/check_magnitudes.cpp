@@ -1,0 +1,34 @@
+#include "bake/check_magnitudes.hpp"
+
+#include "bake/messages.hpp"
+#include "frontalis/physics/materials/lookup.hpp"
+
+namespace frontalis
+{
+
+void check_magnitudes(const Scene& scene, const Model& model, BakeMonitor& monitor)
+{
+  const auto check =
+      [&](const std::string& place, const char* what, double value, double least, double most, const char* unit)
+  {
+    if (value < least || value > most)
+      monitor.warn("{}: {} is {:.3g} {}, expected {:g} to {:g}; a number without a unit is in {}", place, what, value,
+                   unit, least, most, unit);
+  };
+  for (std::size_t m = 0; m < scene.materials.size(); ++m)
+  {
+    const std::string place = place_in_scene(scene, "material", scene.materials[m]);
+    check(place, "density", scene.materials[m].density, 100, 20e3, "kg/m3");
+    check(place, "shear modulus at rest",
+          physics::shear_modulus_of(model.materials[m].law, model.materials[m].parameters), 50, 100e9, "Pa");
+  }
+  for (const SceneMuscle& muscle : scene.muscles)
+  {
+    const std::string place = place_in_scene(scene, "muscle", muscle);
+    check(place, "stress_reference", muscle.stress_reference, 0, 100e6, "Pa");
+    check(place, "cross_section", muscle.cross_section, 0, 0.01, "m2");
+  }
+  check(scene.file, "gravity", to_vector(scene.gravity).norm(), 0, 100, "m/s2");
+}
+
+}  // namespace frontalis

@@ -1,0 +1,66 @@
+#include "bake/check_sides.hpp"
+
+#include "bake/messages.hpp"
+
+#include <map>
+
+namespace frontalis
+{
+namespace
+{
+
+struct Thing
+{
+  std::string place;  // beginning of a message about it
+  Vector3d at;
+};
+
+/// Examines things by their names; those without a counterpart are ignored.
+void check_pairs(const Scene& scene, const std::map<std::string, Thing>& things)
+{
+  constexpr double least_distance = 1e-3;  // [m]
+  constexpr double clear = 0.5;            // cosine; axes of a scene without 'frame' may lie in any direction
+  const std::string left_end = "_left";
+  const Vector3d left = to_vector(scene.frame.up).cross(to_vector(scene.frame.forward)).normalized();
+  std::size_t pairs = 0, exchanged = 0;
+  std::string first;
+  for (const auto& [name, thing] : things)
+  {
+    const std::size_t end = name.size() - std::min(name.size(), left_end.size());
+    const auto other = name.substr(end) == left_end ? things.find(name.substr(0, end) + "_right") : things.end();
+    if (other == things.end())
+      continue;
+    ++pairs;
+    const Vector3d apart = thing.at - other->second.at;
+    if (apart.norm() < least_distance || left.dot(apart) > -clear * apart.norm())
+      continue;
+    if (exchanged++ == 0)
+      first = fmt::format("{} lies {} to the right of '{}'", thing.place, length_text(-left.dot(apart), scene.unit),
+                          other->first);
+  }
+  if (exchanged > 0)
+    throw failure("{} in the face frame (pairs with left and right exchanged: {} of {}): {}", first, exchanged, pairs,
+                  exchanged == pairs
+                      ? "the data are mirrored or turned, or 'forward' and 'up' of the scene's 'frame' are "
+                        "not those of the data"
+                      : "exchange their names or files");
+}
+
+}  // namespace
+
+void check_sides(const Scene& scene, const PreparedSurfaces& surfaces)
+{
+  std::map<std::string, Thing> things;
+  for (const Surface& given : scene.surfaces)
+    for (const auto& surface : surfaces)
+      if (given.name == surface->name())
+        things[given.name] = { place_in_scene(scene, "surface", given), surface->box().center() };
+  check_pairs(scene, things);
+  things.clear();
+  for (const SceneLandmark& landmark : scene.landmarks)
+    if (!landmark.head)
+      things[landmark.name] = { place_in_scene(scene, "landmark", landmark), to_vector(landmark.position) };
+  check_pairs(scene, things);
+}
+
+}  // namespace frontalis
