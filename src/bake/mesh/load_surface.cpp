@@ -207,9 +207,17 @@ void describe(const MeshFaults& faults, double unit, const Found& found)
     found(fmt::format("{} of triangles cross, the widest group {} at {}",
                       count_text(faults.crossings.count, "pair", "pairs"), length_text(faults.crossing_extent, unit),
                       place_text(faults.crossings.place, unit)));
-  if (!faults.holes.empty())
-    found(fmt::format("is open: {}, the largest {} around, at {}", count_text(faults.holes.size(), "hole", "holes"),
-                      length_text(faults.holes.front().length, unit), place_text(faults.holes.front().centre, unit)));
+  if (faults.holes.empty())
+    return;
+  // The largest one is often where a head ends, at the neck; those that matter are smaller.
+  constexpr std::size_t most_told = 6;
+  const auto hole_text = [&](const MeshFaults::Hole& hole)
+  { return fmt::format("{} around, at {}", length_text(hole.length, unit), place_text(hole.centre, unit)); };
+  std::string text = fmt::format("is open: {}, the largest {}", count_text(faults.holes.size(), "hole", "holes"),
+                                 hole_text(faults.holes.front()));
+  for (std::size_t h = 1; h < std::min(most_told, faults.holes.size()); ++h)
+    text += "; " + hole_text(faults.holes[h]);
+  found(text);
 }
 
 /// What is wrong with a binary STL file that ends too early, or an empty text.
