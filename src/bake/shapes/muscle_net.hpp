@@ -40,8 +40,8 @@ ControlNet curved_muscle_net(const Shape& shape);
 /// The NURBS volume of a control net.
 NurbsVolume volume_of(const ControlNet& net);
 
-/// Surface of the NURBS volume of a control net, with edges of about `edge` [m]: all of it, which is closed, or one side
-/// alone, for a volume without a thickness.
+/// Surface of the NURBS volume of a control net, with edges of about `edge` [m]: all of it, which is closed, or one
+/// side alone, for a volume without a thickness.
 TriangleMesh net_surface(const ControlNet& net, double edge, bool closed = true);
 
 }  // namespace frontalis
