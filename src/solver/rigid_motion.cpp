@@ -1,5 +1,7 @@
 #include "frontalis/solver/rigid_motion.hpp"
 
+#include "frontalis/solver/solver.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -85,6 +87,16 @@ RigidTransform interpolate(const RigidTransform& from, const RigidTransform& to,
         result.rotation[3 * i + j] += turn[i][k] * a[3 * k + j];
     }
   }
+  return result;
+}
+
+Controls interpolate(const Controls& from, const Controls& to, double fraction)
+{
+  Controls result = to;
+  for (std::size_t m = 0; m < result.activation.size(); ++m)
+    result.activation[m] = from.activation[m] + static_cast<float>(fraction) * (to.activation[m] - from.activation[m]);
+  for (std::size_t b = 0; b < result.bone.size(); ++b)
+    result.bone[b] = interpolate(from.bone[b], to.bone[b], fraction);
   return result;
 }
 

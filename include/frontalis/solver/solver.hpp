@@ -72,12 +72,11 @@ public:
   /// Returns to rest at time 0 with all controls at zero.
   virtual void reset() = 0;
 
-  /// Advances by exactly `seconds` of simulated time in equal steps of at most the safe time step. Over that time
-  /// activations and bone poses change linearly to `target`; bones rotate through the smallest angle, as far as a fifth
-  /// of the speed of sound in the tissue takes them. Throws Error, with the state unchanged, if the target is not
-  /// finite, outside 0..1 or of the wrong length. Throws Diverged, after which only reset() and restore() are of use.
-  /// `go_on` is called every few dozen steps and ends the motion early by returning false, with controls as far as they
-  /// have come. Returns whether the motion has reached its end.
+  /// Advances by exactly `seconds` of simulated time in equal steps of at most the safe time step. Meanwhile
+  /// activations and bone poses change linearly to `target`; bones rotate through the smallest angle, at most at a
+  /// fifth of the speed of sound in the tissue. `go_on`, called every few dozen steps, ends the motion early by
+  /// returning false. Returns whether the motion has reached its end. Throws Error, with the state unchanged, if the
+  /// target is not finite, outside 0..1 or of the wrong length; Diverged, after which only reset() and restore() help.
   virtual bool advance(double seconds, const Controls& target, const std::function<bool()>& go_on = {}) = 0;
 
   /// Throws the Error that advance() would throw: after divergence, or for an invalid duration or target.
@@ -139,8 +138,7 @@ public:
   virtual void set_displacements(const std::vector<std::array<double, 3>>& in) = 0;
   /// Sets nodal velocities [m/s]; for tests and studies.
   virtual void set_velocities(const std::vector<std::array<double, 3>>& in) = 0;
-  /// Internal forces [N] at the present displacements (elastic, hourglass, fibres; on a CPU also those of shells and
-  /// contact), before constraints.
+  /// Internal forces [N] at the present displacements, before constraints; of shells and contact on a CPU alone.
   virtual void internal_forces(std::vector<std::array<double, 3>>& out) = 0;
 
   virtual std::string description() const = 0;  ///< backend, instruction set or device, threads

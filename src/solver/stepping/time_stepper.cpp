@@ -52,16 +52,6 @@ private:
 
 }  // namespace
 
-Controls interpolate(const Controls& from, const Controls& to, double fraction)
-{
-  Controls result = to;
-  for (std::size_t m = 0; m < result.activation.size(); ++m)
-    result.activation[m] = from.activation[m] + static_cast<float>(fraction) * (to.activation[m] - from.activation[m]);
-  for (std::size_t b = 0; b < result.bone.size(); ++b)
-    result.bone[b] = interpolate(from.bone[b], to.bone[b], fraction);
-  return result;
-}
-
 TimeStepper::TimeStepper(std::shared_ptr<const Model> model, const SolverSettings& settings,
                          const MakeBackend& make_backend)
     : model_((check_model(*model), std::move(model))),
