@@ -291,6 +291,9 @@ TEST(FaceAppearance, BodiesHaveTheColourOfTeethSkinHairTongueOrMetal)
   EXPECT_EQ(label_names().at(hair.label), "hair");
   EXPECT_EQ(tongue.label, body_label);
   EXPECT_LT(tongue.colour[1], 0.6F * tongue.colour[0]);
+  EXPECT_EQ(body_appearance("mouth", true, none).label, inside_label);
+  EXPECT_EQ(body_appearance("mouth", true, none).colour, inside_colour);
+  EXPECT_EQ(body_appearance("mouth", false, none).colour, teeth.colour);
   const auto core = body_appearance("core_jaw", true, none);
   EXPECT_EQ(core.label, body_label);
   EXPECT_GT(core.colour[2], core.colour[0]);  // bluish, as metal is

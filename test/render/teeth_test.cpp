@@ -44,6 +44,38 @@ std::pair<std::array<float, 3>, std::uint8_t> at(const RenderMesh& mesh, double 
   return { mesh.colours[closest], mesh.labels[closest] };
 }
 
+// A body that fills the arch has teeth along its front only.
+TEST(Teeth, end_where_palate_and_floor_of_the_mouth_begin)
+{
+  TriangleMesh filled = arch();
+  const TriangleMesh front = filled;
+  const auto first = static_cast<std::int32_t>(front.vertices.size());
+  for (const auto& v : front.vertices)
+    filled.vertices.push_back({ v[0] - 12e-3, v[1], v[2] });
+  for (const auto& t : front.triangles)
+    filled.triangles.push_back({ t[0] + first, t[1] + first, t[2] + first });
+  for (const bool lower : { false, true })
+  {
+    const RenderMesh mesh = painted_teeth(filled, lower, 0);
+    int behind = 0, in_front = 0;
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
+    {
+      if (std::abs(mesh.vertices[v][1]) > 15e-3F)
+        continue;
+      const bool is_gum = mesh.colours[v][0] > 1.4F * mesh.colours[v][1];
+      if (mesh.vertices[v][0] < 6e-3F)
+      {
+        ++behind;
+        EXPECT_TRUE(is_gum);
+      }
+      else
+        in_front += is_gum ? 0 : 1;
+    }
+    EXPECT_GT(behind, 100);
+    EXPECT_GT(in_front, 100);
+  }
+}
+
 TEST(Teeth, are_painted_between_gums_and_their_edges)
 {
   const TriangleMesh surface = arch();
