@@ -39,8 +39,8 @@ public:
   void set(NodalField field, const NodalVectors& in) override;
   void save(std::unique_ptr<BackendState>& to) override;
   void restore(const BackendState& from) override;
-  void internal_forces(const NodalVectors* displacements, NodalVectors& out) override;
-  std::optional<double> highest_frequency_squared() override;
+  void internal_forces(NodalVectors& out) override;
+  double highest_frequency_squared() override;
   Monitor monitor() override;
   Work work(bool open) override;
   void add_energies(bool open, NodalVectors& forces, EnergyLedger& ledger) override;

@@ -265,19 +265,13 @@ void CudaSolver::queue_forces(float4* at, const float* activation, float4* out, 
     }
 }
 
-void CudaSolver::internal_forces(const NodalVectors* displacements, NodalVectors& out)
+void CudaSolver::internal_forces(NodalVectors& out)
 {
   synchronise();
-  DeviceArray<float4> moved;
-  if (displacements != nullptr)
-  {
-    moved = DeviceArray<float4>(device_.nodes());
-    upload_displacements(*displacements, moved);
-  }
   const DeviceArray<float> activation(conditions_.activation);
   const DeviceArray<float4> forces(device_.nodes());
   require(cudaMemset(forces.data(), 0, forces.bytes()), "clearing forces");
-  queue_forces(displacements != nullptr ? moved.data() : u_[present_].data(), activation.data(), forces.data());
+  queue_forces(u_[present_].data(), activation.data(), forces.data());
   synchronise();
   download(forces, out);
 }

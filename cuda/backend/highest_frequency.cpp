@@ -65,7 +65,7 @@ void CudaSolver::prepare_followers(const std::vector<double>& root)
   search_->follower_begin = DeviceArray<std::uint32_t>(begin);
 }
 
-std::optional<double> CudaSolver::highest_frequency_squared()
+double CudaSolver::highest_frequency_squared()
 {
   synchronise();
   if (!search_)

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 using namespace frontalis;
@@ -23,43 +24,55 @@ Model bar()
 // A bar of voxels whose nodes form a chain of springs in the order of their numbers.
 struct Chain
 {
+  using Components = HighestFrequencySearch<double>::Components;
   Model model;
   Discretisation discretisation;
-  NodalVectors u;
+  Components u;
   int products = 0;
   double stiff = 1;      // factor on the stiffness of the middle spring
   double curvature = 0;  // relative change of the springs' stiffness per displacement [1/m]
   double mass = 1e-6;
 
-  explicit Chain(Model of = bar()) : model(std::move(of)), discretisation(model), u(model.nodes.size())
+  explicit Chain(Model of = bar()) : model(std::move(of)), discretisation(model)
   {
     for (double& m : discretisation.node_mass)
       m = mass;
-    discretisation.held = { 0, static_cast<std::int32_t>(u.size()) - 1 };
+    discretisation.held = { 0, nodes() - 1 };
   }
+  std::int32_t nodes() const { return static_cast<std::int32_t>(model.nodes.size()); }
   double search()
   {
     products = -1;  // so that evaluating the forces at u does not count as a product
-    return highest_frequency_squared(model, discretisation, u,
-                                     [this](const NodalVectors& at, NodalVectors& out)
-                                     {
-                                       ++products;
-                                       out.assign(at.size(), {});
-                                       for (std::size_t n = 1; n < at.size(); ++n)
-                                         for (std::size_t axis = 0; axis < 3; ++axis)
-                                         {
-                                           const double stretch = at[n][axis] - at[n - 1][axis];
-                                           const double k = n == at.size() / 2 ? stiff * stiffness : stiffness;
-                                           const double force = k * stretch * (1 + curvature * stretch);
-                                           out[n][axis] += force;
-                                           out[n - 1][axis] -= force;
-                                         }
-                                     });
+    const std::int32_t count = nodes();
+    Components found;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+      u[axis].assign(count, 0);
+      found[axis].assign(count, 0);
+    }
+    const auto find = [&](const Components& at)
+    {
+      ++products;
+      for (std::size_t axis = 0; axis < 3; ++axis)
+      {
+        std::fill(found[axis].begin(), found[axis].end(), 0.0);
+        for (std::int32_t n = 1; n < count; ++n)
+        {
+          const double stretch = at[axis][n] - at[axis][n - 1];
+          const double k = n == count / 2 ? stiff * stiffness : stiffness;
+          const double force = k * stretch * (1 + curvature * stretch);
+          found[axis][n] += force;
+          found[axis][n - 1] -= force;
+        }
+      }
+    };
+    HighestFrequencySearch<double> search(model, discretisation, { 0, count / 3, count }, count);
+    return search.run(0, count, u, { find, found, [] {} });
   }
   // Exact largest eigenvalue of a chain that is held at both ends.
   double exact() const
   {
-    const double segments = static_cast<double>(u.size()) - 1;
+    const double segments = nodes() - 1.0;
     return 4 * stiffness / mass * std::pow(std::sin(0.5 * M_PI * (segments - 1) / segments), 2);
   }
 };
@@ -110,7 +123,7 @@ TEST(HighestFrequencySearch, moves_both_nodes_of_a_joint_as_one)
   model.joints.push_back({ middle, middle - 1 });
   Chain chain(model);
   chain.stiff = 100;
-  for (std::int32_t n = 0; n < static_cast<std::int32_t>(chain.u.size()); ++n)
+  for (std::int32_t n = 0; n < chain.nodes(); ++n)
     if (n < middle - 1 || n > middle)
       chain.discretisation.held.push_back(n);
   EXPECT_NEAR(chain.search() / (stiffness / chain.mass), 1, 5e-3);
@@ -119,8 +132,8 @@ TEST(HighestFrequencySearch, moves_both_nodes_of_a_joint_as_one)
 TEST(HighestFrequencySearch, finds_nothing_where_no_node_can_move)
 {
   Chain chain;
-  for (std::size_t n = 0; n < chain.u.size(); ++n)
-    chain.discretisation.held.push_back(static_cast<std::int32_t>(n));
+  for (std::int32_t n = 0; n < chain.nodes(); ++n)
+    chain.discretisation.held.push_back(n);
   EXPECT_TRUE(std::isnan(chain.search()));
 }
 

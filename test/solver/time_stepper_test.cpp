@@ -63,7 +63,8 @@ public:
     to = std::move(state);
   }
   void restore(const BackendState& from) override { script_.plans.resize(static_cast<const ScriptState&>(from).plans); }
-  void internal_forces(const NodalVectors*, NodalVectors& out) override { out.assign(model_->nodes.size(), {}); }
+  void internal_forces(NodalVectors& out) override { out.assign(model_->nodes.size(), {}); }
+  double highest_frequency_squared() override { return script_.bound; }
   Monitor monitor() override
   {
     Monitor monitor;

@@ -2,7 +2,6 @@
 
 #include "frontalis/physics/contact.hpp"
 #include "frontalis/physics/hourglass.hpp"
-#include "frontalis/physics/trilinear.hpp"
 #include "solver/contact/pushed_contact.hpp"
 #include "solver/stepping/bound_stiffness.hpp"
 #include "solver/stepping/discretisation.hpp"
@@ -168,26 +167,16 @@ std::vector<double> ContactStiffness::rows(const Model& model, bool alone) const
   return rows;
 }
 
-void ContactStiffness::add_forces(const Model& model, const std::vector<std::array<double, 3>>& displacements,
-                                  std::vector<std::array<double, 3>>& forces) const
+std::vector<PointStiffness> ContactStiffness::matrices() const
 {
+  std::vector<PointStiffness> matrices;
   for (const Surface& surface : surfaces_)
-    for (std::size_t p = 0; p < surface.points.size(); ++p)
-    {
-      const auto& at = surface.binding->coordinates[p];
-      const auto& nodes = model.voxel_nodes[surface.binding->voxel[p]];
-      double weight[8];
-      physics::trilinear_weights<double>(at[0], at[1], at[2], weight);
-      double force[3] = {};
-      for (std::size_t b = 0; b < 8; ++b)
-        for (std::size_t axis = 0; axis < 3; ++axis)
-          force[axis] += weight[b] * displacements[nodes[b]][axis];
-      for (double& f : force)
-        f *= surface.moves * double(surface.points[p]);
-      for (std::size_t b = 0; b < 8; ++b)
-        for (std::size_t axis = 0; axis < 3; ++axis)
-          forces[nodes[b]][axis] += weight[b] * force[axis];
-    }
+  {
+    matrices.push_back({ surface.binding, {} });
+    for (std::int32_t p = 0; p < static_cast<std::int32_t>(surface.points.size()); ++p)
+      matrices.back().entries.push_back({ p, p, surface.moves * double(surface.points[p]) });
+  }
+  return matrices;
 }
 
 }  // namespace frontalis

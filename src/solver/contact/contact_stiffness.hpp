@@ -26,10 +26,8 @@ public:
   /// Contact's part of the bound of a voxel's stiffness [N/m]. In tissue with a Poisson's ratio of 0.49 it is at most
   /// 7 % of the voxel's own stiffness.
   double in_voxel(std::size_t voxel) const override { return double(voxels_[voxel]); }
-  /// Adds the internal forces [N] at displacements [m], with all points touching, sticking, and as stiff along the
-  /// surface as along its normal.
-  void add_forces(const Model& model, const std::vector<std::array<double, 3>>& displacements,
-                  std::vector<std::array<double, 3>>& forces) const override;
+  /// All points touch, stick, and are as stiff along the surface as along its normal.
+  std::vector<PointStiffness> matrices() const override;
 
   /// Longest stable step of bodies that are pushed [s].
   double longest_step() const override { return longest_step_; }

@@ -82,7 +82,6 @@ void CpuSolver<Real>::list_arrays(ArrayList& list)
     list.add("motion", next_[axis]);
     list.add_state("rounding errors", rounding_[axis]);
     list.add("what the monitor looks at", wide_[axis]);
-    list.add("displaced nodes", moved_[axis]);
   }
   for (const auto& buffer : buffers_)
     list.add("forces and stiffness of two planes", buffer);

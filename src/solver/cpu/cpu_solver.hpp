@@ -26,7 +26,6 @@ public:
   void list_arrays(ArrayList& list) override;
   double run(const StepPlan& plan) override;
   void effects_switched() override;
-  void internal_forces(const NodalVectors* displacements, NodalVectors& out) override;
   Monitor monitor() override;
   Work work(bool open) override;
 
@@ -38,10 +37,14 @@ private:
   using Arguments = CpuKernelArguments<Real>;
 
   void rest() override;
+  void on_all_threads(const std::function<void(const NodeShare&)>& task) override;
+  void barrier() override { team_.barrier(); }
+  std::vector<std::int32_t> first_nodes() const override { return rows_.plane_nodes; }
+  void find_forces(const NodeShare& share, const Components& u) override;
+  const Components& found_forces() const override { return next_; }
   void share_planes(const std::vector<std::int32_t>& plane_tiles);
   Arguments arguments(double dt, const float* activation);
   void kick(Arguments& g, double seconds) const;
-  void run_on_all(const Arguments& g, KernelTask task);
   void choose_passive();
 
   VoxelRows rows_;
@@ -56,7 +59,6 @@ private:
   std::vector<std::int32_t> slab_;  // thread t owns node planes slab_[t] .. slab_[t + 1]
   std::vector<std::vector<Real>> buffers_;
   std::array<std::vector<double>, 3> wide_;  // displacements in double precision for the monitor; empty until first use
-  Components moved_;                         // buffer for displacements other than the state's; empty until first use
 };
 
 }  // namespace frontalis

@@ -62,26 +62,25 @@ CpuKernelArguments<Real> CpuSolver<Real>::arguments(double dt, const float* acti
 }
 
 template <class Real>
-void CpuSolver<Real>::run_on_all(const Arguments& g, KernelTask task)
+void CpuSolver<Real>::on_all_threads(const std::function<void(const NodeShare&)>& task)
 {
-  team_.run([&](int t) { kernel_(g, slab_[t], slab_[t + 1], buffers_[t].data(), task); });
+  team_.run(
+      [&](int t)
+      {
+        const FlushDenormals flush;
+        const std::int32_t first = slab_[t], end = slab_[t + 1];
+        task({ t, team_.size(), first, end, rows_.plane_nodes[first], rows_.plane_nodes[end] });
+      });
 }
 
 template <class Real>
-void CpuSolver<Real>::internal_forces(const NodalVectors* displacements, NodalVectors& out)
+void CpuSolver<Real>::find_forces(const NodeShare& share, const Components& u)
 {
   Arguments g = arguments(0, conditions_.activation.data());
   g.fibre_memory = nullptr;
-  if (displacements != nullptr)
-  {
-    for (auto& component : moved_)
-      component.resize(u_[0].size());
-    this->separate(*displacements, moved_);
-    for (int axis = 0; axis < 3; ++axis)
-      g.u[axis] = moved_[axis].data();
-  }
-  run_on_all(g, KernelTask::forces);
-  this->interleave(next_, out);
+  for (int axis = 0; axis < 3; ++axis)
+    g.u[axis] = u[axis].data();
+  kernel_(g, share.first_plane, share.end_plane, buffers_[share.thread].data(), KernelTask::forces);
 }
 
 template <class Real>
@@ -94,6 +93,11 @@ Work CpuSolver<Real>::work(bool open)
   Arguments g = arguments(0, conditions_.activation.data());
   if (open)
     g.muscle_work = nullptr;
+  const auto run_on_all = [&](const Arguments& arguments, KernelTask task)
+  {
+    on_all_threads([&](const NodeShare& share)
+                   { kernel_(arguments, share.first_plane, share.end_plane, buffers_[share.thread].data(), task); });
+  };
   run_on_all(g, KernelTask::forces);
   if (!open && relaxed_.relax())
     run_on_all(arguments(0, nullptr), KernelTask::relax);
@@ -118,21 +122,18 @@ double CpuSolver<Real>::run(const StepPlan& plan)
   std::vector<Real> seen(team_.size(), 0);
   Arguments first = arguments(plan.dt, nullptr);
   kick(first, plan.first_kick);
-  team_.run(
-      [&](int t)
+  on_all_threads(
+      [&](const NodeShare& share)
       {
-        const FlushDenormals flush;
         Arguments g = first;
-        const std::int32_t begin = rows_.plane_nodes[slab_[t]], end = rows_.plane_nodes[slab_[t + 1]];
-        const NodeShare share{ t, team_.size(), slab_[t], slab_[t + 1], begin, end };
-        Real* const buffer = buffers_[t].data();
+        Real* const buffer = buffers_[share.thread].data();
         for (int step = 0; step < plan.steps; ++step)
         {
           if (step == 1)
             kick(g, plan.dt);
           g.activation = activation.data() + step * muscles;
           if (account_)
-            account_->before(begin, end, g.v);
+            account_->before(share.first_node, share.end_node, g.v);
           for (NodePart<Real>* const part : parts)
             part->prepare_step(share, g.u);
           if (prepared)
@@ -143,13 +144,13 @@ double CpuSolver<Real>::run(const StepPlan& plan)
             team_.barrier();
           const auto task =
               plan.bound_every_step || step + 1 == plan.steps ? KernelTask::step_and_bound : KernelTask::step;
-          const Real frequency_squared = kernel_(g, slab_[t], slab_[t + 1], buffer, task);
-          if (!(frequency_squared <= seen[t]))
-            seen[t] = frequency_squared;
+          const Real frequency_squared = kernel_(g, share.first_plane, share.end_plane, buffer, task);
+          if (!(frequency_squared <= seen[share.thread]))
+            seen[share.thread] = frequency_squared;
           for (NodePart<Real>* const part : parts)
             part->add_forces(share, { g.gain, g.dt, inverse_mass_.data(), g.next, g.v });
           if (account_)
-            account_->unconstrained(begin, end, g.v);
+            account_->unconstrained(share.first_node, share.end_node, g.v);
           for (NodePart<Real>* const part : parts)
             part->constrain(share, g.next, g.v, g.u, constraint_steps[step]);
           if (grouped)
@@ -162,7 +163,7 @@ double CpuSolver<Real>::run(const StepPlan& plan)
           for (NodePart<Real>* const part : parts)
             part->after_step(share, g.u, g.next);
           if (account_)
-            account_->after(slab_[t], slab_[t + 1], g.u, g.next, g.v, conditions_.damping, double(g.dt),
+            account_->after(share.first_plane, share.end_plane, g.u, g.next, g.v, conditions_.damping, double(g.dt),
                             double(g.kick));
           for (NodePart<Real>* const part : parts)
             if (account_)
@@ -177,7 +178,7 @@ double CpuSolver<Real>::run(const StepPlan& plan)
           if (relaxed_.relax() && plan.relaxation[step] > 0)
           {
             g.viscous_elapsed = static_cast<Real>(plan.relaxation[step]);
-            kernel_(g, slab_[t], slab_[t + 1], buffer, KernelTask::relax);
+            kernel_(g, share.first_plane, share.end_plane, buffer, KernelTask::relax);
             team_.barrier();
           }
         }

@@ -125,7 +125,7 @@ void EnergyLedgerKeeper::add_latest_half_step(double time, double dt)
   NodalVectors u, v, internal;
   backend_.get(NodalField::displacements, u);
   backend_.get(NodalField::velocities, v);
-  backend_.internal_forces(nullptr, internal);
+  backend_.internal_forces(internal);
   NodalVectors touching(u.size());
   backend_.add_energies(false, touching, ledger_);
   const NodalVectors external = external_forces(time, u);

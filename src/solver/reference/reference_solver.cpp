@@ -66,14 +66,15 @@ void ReferenceSolver::list_arrays(ArrayList& list)
   list.add_state(effect_of_fibres(*model_), "work of fibres", fibre_memory_);
 }
 
-void ReferenceSolver::internal_forces(const NodalVectors* displacements, NodalVectors& out)
+NodeShare ReferenceSolver::all_nodes() const
+{
+  return { 0, 1, 0, model_->size[2] + 1, 0, static_cast<std::int32_t>(model_->nodes.size()) };
+}
+
+void ReferenceSolver::find_forces(const NodeShare& /*share*/, const Components& u)
 {
   accounting_ = false;
-  Components at = u_;
-  if (displacements != nullptr)
-    separate(*displacements, at);
-  forces(at, conditions_.activation);
-  interleave(f_, out);
+  forces(u, conditions_.activation);
 }
 
 Monitor ReferenceSolver::monitor()
@@ -104,8 +105,7 @@ double ReferenceSolver::run(const StepPlan& plan)
   double* const u[3] = { u_[0].data(), u_[1].data(), u_[2].data() };
   double* const v[3] = { v_[0].data(), v_[1].data(), v_[2].data() };
   double* const f[3] = { f_[0].data(), f_[1].data(), f_[2].data() };
-  const auto count = static_cast<std::int32_t>(model_->nodes.size());
-  const NodeShare share{ 0, 1, 0, model_->size[2] + 1, 0, count };
+  const NodeShare share = all_nodes();
   const std::vector<NodePart<double>*> parts = active_parts();
   double worst = 0;
   for (int step = 0; step < plan.steps; ++step)
@@ -126,7 +126,7 @@ double ReferenceSolver::run(const StepPlan& plan)
     if (plan.bound_every_step || step + 1 == plan.steps)
       worst = physics::larger_or_none(worst, step_bound(discretisation_, *model_, stiffness_).frequency_squared);
     if (account_)
-      account_->before(0, count, v);
+      account_->before(share.first_node, share.end_node, v);
     for (int axis = 0; axis < 3; ++axis)
       for (std::size_t n = 0; n < model_->nodes.size(); ++n)
       {
@@ -136,7 +136,7 @@ double ReferenceSolver::run(const StepPlan& plan)
       }
     const double* const old[3] = { before[0].data(), before[1].data(), before[2].data() };
     if (account_)
-      account_->unconstrained(0, count, v);
+      account_->unconstrained(share.first_node, share.end_node, v);
     for (NodePart<double>* const part : parts)
       part->constrain(share, u, v, old, constraint_step);
     for (NodePart<double>* const part : parts)
@@ -144,7 +144,7 @@ double ReferenceSolver::run(const StepPlan& plan)
     for (NodePart<double>* const part : parts)
       part->after_step(share, old, u);
     if (account_)
-      account_->after(0, model_->size[2] + 1, old, u, v, conditions_.damping, plan.dt, kick);
+      account_->after(share.first_plane, share.end_plane, old, u, v, conditions_.damping, plan.dt, kick);
     for (NodePart<double>* const part : parts)
       if (account_)
         part->account(share, *account_, v, kick);

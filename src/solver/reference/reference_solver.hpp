@@ -20,7 +20,6 @@ public:
   void list_arrays(ArrayList& list) override;
   double run(const StepPlan& plan) override;
   void effects_switched() override;
-  void internal_forces(const NodalVectors* displacements, NodalVectors& out) override;
   Monitor monitor() override;
   Work work(bool open) override;
 
@@ -28,6 +27,13 @@ private:
   using Kinematics = physics::Kinematics<double>;
   using Stress = physics::Matrix3<double>;
   using Derivatives = double[8][3];
+
+  NodeShare all_nodes() const;
+  void on_all_threads(const std::function<void(const NodeShare&)>& task) override { task(all_nodes()); }
+  void barrier() override {}
+  std::vector<std::int32_t> first_nodes() const override { return { 0, all_nodes().end_node }; }
+  void find_forces(const NodeShare& share, const Components& u) override;
+  const Components& found_forces() const override { return f_; }
 
   EffectSet effects() const { return conditions_.running; }
   void shape_derivatives(const double (&at)[3], Derivatives& out) const;

@@ -16,11 +16,9 @@ public:
   ShellStiffness(const Model& model, const Discretisation& discretisation);
 
   double in_voxel(std::size_t voxel) const override { return double(voxels_[voxel]); }
-  /// Adds the forces of an upper bound of the shells' stiffness. Each triangle has the stiffness of its stiffest
-  /// direction in all directions; in addition, each of its vertices has a spring that is stiffer than the triangle in
-  /// bending.
-  void add_forces(const Model& model, const std::vector<std::array<double, 3>>& displacements,
-                  std::vector<std::array<double, 3>>& forces) const override;
+  /// An upper bound of the shells' stiffness. Each triangle has the stiffness of its stiffest direction in all
+  /// directions; in addition, each of its vertices has a spring that is stiffer than the triangle in bending.
+  std::vector<PointStiffness> matrices() const override;
 
 private:
   ShellMesh mesh_;

@@ -2,8 +2,8 @@
 
 #include "frontalis/model/model.hpp"
 
-#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -11,6 +11,18 @@ namespace frontalis
 {
 
 class Discretisation;
+
+/// Symmetric stiffness matrix of points that are bound to voxels. It is the same along all axes.
+struct PointStiffness
+{
+  struct Entry
+  {
+    std::int32_t row, column;  ///< points
+    double value;              ///< [N/m]; entries of the same place add up
+  };
+  const Binding* binding;
+  std::vector<Entry> entries;
+};
 
 /// Stiffness that an effect adds to that of voxels, for the bound of the highest frequency.
 class AddedStiffness
@@ -20,10 +32,8 @@ public:
 
   /// What the effect adds to the bound of a voxel's stiffness [N/m].
   virtual double in_voxel(std::size_t voxel) const = 0;
-  /// Adds to `forces` the internal forces [N] that this stiffness, at its largest value, causes at the displacements
-  /// [m].
-  virtual void add_forces(const Model& model, const std::vector<std::array<double, 3>>& displacements,
-                          std::vector<std::array<double, 3>>& forces) const = 0;
+  /// The stiffness at its largest value.
+  virtual std::vector<PointStiffness> matrices() const = 0;
 
   /// Increases the stiffness where this does not raise the bound of the highest frequency, because nodes elsewhere
   /// determine the bound. Call it once the masses and the bound are known.

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <random>
+#include <utility>
 
 namespace frontalis
 {
@@ -16,29 +18,29 @@ constexpr double tolerance = 2e-3;
 // The iteration ends where a vector's image lies along itself and the vector before, but for rounding.
 constexpr double smallest_remainder = 1e-6;
 
-// A vector of the iteration, its squared length, and the largest displacement of a node along an axis in it.
-struct LanczosVector
-{
-  NodalVectors value;
-  double squared_length = 0, largest = 0;
+// Independent sums, so that loops over nodes need not wait for each addition and can be vectorised.
+constexpr int lanes = 8;
 
-  /// Subtracts `share` of another vector.
-  void subtract(double share, const NodalVectors& other, const std::vector<double>& root)
-  {
-    // Each axis has a sum of its own, so that additions need not wait for each other.
-    double sum[3] = {}, most[3] = {};
-    for (std::size_t n = 0; n < root.size(); ++n)
-      for (std::size_t axis = 0; axis < 3; ++axis)
-      {
-        const double x = value[n][axis] - share * other[n][axis];
-        value[n][axis] = x;
-        sum[axis] += x * x;
-        most[axis] = std::max(most[axis], std::abs(x) * root[n]);
-      }
-    squared_length = sum[0] + sum[1] + sum[2];
-    largest = std::max({ most[0], most[1], most[2] });
-  }
-};
+template <class Real>
+double sum_of(const Real (&lane)[lanes])
+{
+  double sum = 0;
+  for (const Real x : lane)
+    sum += double(x);
+  return sum;
+}
+
+// Calls visit(node, lane) for the nodes [first, end).
+template <class Visit>
+void in_lanes(std::int32_t first, std::int32_t end, const Visit& visit)
+{
+  std::int32_t n = first;
+  for (; n + lanes <= end; n += lanes)
+    for (int lane = 0; lane < lanes; ++lane)
+      visit(n + lane, lane);
+  for (; n < end; ++n)
+    visit(n, 0);
+}
 
 }  // namespace
 
@@ -84,9 +86,9 @@ bool LanczosMatrix::settled() const
   return rows() >= fewest_rows && found - largest_[rows() - 3] < tolerance * found;
 }
 
-NodalVectors random_mode(std::size_t nodes)
+std::vector<std::array<double, 3>> random_mode(std::size_t nodes)
 {
-  NodalVectors mode(nodes);
+  std::vector<std::array<double, 3>> mode(nodes);
   std::mt19937 random(1);
   for (auto& p : mode)
     for (double& x : p)
@@ -115,50 +117,175 @@ std::vector<double> roots_for_search(const Discretisation& discretisation)
   return root;
 }
 
-double highest_frequency_squared(const Model& model, const Discretisation& discretisation, const NodalVectors& u,
-                                 const std::function<void(const NodalVectors& at, NodalVectors& out)>& internal_forces)
+template <class Real>
+HighestFrequencySearch<Real>::HighestFrequencySearch(const Model& model, const Discretisation& discretisation,
+                                                     std::vector<std::int32_t> first_node, std::size_t entries)
+    : model_(model),
+      first_node_(std::move(first_node)),
+      followers_(discretisation.followers),
+      added_(model, discretisation, roots_for_search(discretisation)),
+      size_(first_node_.size() - 1),
+      along_(size_.size())
 {
-  const std::vector<double> root = roots_for_search(discretisation);
-  const auto& followers = discretisation.followers;
-  NodalVectors moved(root.size()), present, forces;
-  internal_forces(u, present);
-  LanczosVector now{ random_mode(root.size()) }, before{ NodalVectors(root.size()) };
-  for (std::size_t n = 0; n < root.size(); ++n)
-    if (root[n] == 0)
-      now.value[n] = {};
-  now.subtract(0, now.value, root);
-  double length_before = 1;
-  LanczosMatrix matrix;
-  for (int iteration = 0; iteration < most_lanczos_iterations && !matrix.settled() && now.largest > 0; ++iteration)
+  for (const double x : roots_for_search(discretisation))
+    root_.push_back(static_cast<Real>(x));
+  std::stable_sort(followers_.begin(), followers_.end(),
+                   [](const auto& a, const auto& b) { return a.master < b.master; });
+  for (auto* vector : { &start_, &now_, &before_, &moved_, &present_ })
+    for (auto& component : *vector)
+      component.assign(entries, 0);
+  const auto mode = random_mode(root_.size());
+  for (std::size_t n = 0; n < root_.size(); ++n)
+    for (std::size_t axis = 0; axis < 3 && root_[n] > 0; ++axis)
+      start_[axis][n] = static_cast<Real>(mode[n][axis]);
+}
+
+template <class Real>
+void HighestFrequencySearch<Real>::list_arrays(ArrayList& list) const
+{
+  const std::string what = "search for the highest frequency";
+  for (const auto* vector : { &start_, &now_, &before_, &moved_, &present_ })
+    for (const auto& component : *vector)
+      list.add(what, component);
+  list.add(what, root_);
+  list.add(what, followers_);
+  list.add(what, size_);
+  list.add(what, along_);
+  added_.list_arrays(what, list);
+}
+
+template <class Real>
+typename HighestFrequencySearch<Real>::Size HighestFrequencySearch<Real>::total_size() const
+{
+  Size total;
+  for (const Size& part : size_)
+    total = { total.squared_length + part.squared_length, std::max(total.largest, part.largest) };
+  return total;
+}
+
+template <class Real>
+std::size_t HighestFrequencySearch<Real>::part_of(std::int32_t node) const
+{
+  return std::lower_bound(first_node_.begin(), first_node_.end(), node) - first_node_.begin();
+}
+
+// Finds the displacements with `scale` times those of the vector `now` added to u.
+template <class Real>
+void HighestFrequencySearch<Real>::displace(const Nodes& nodes, const Components& u, Real scale, const Components& now)
+{
+  for (std::size_t axis = 0; axis < 3; ++axis)
   {
-    const double scale = mode_amplitude(model, iteration) / now.largest, length = std::sqrt(now.squared_length);
-    for (std::size_t n = 0; n < root.size(); ++n)
-      for (int axis = 0; axis < 3; ++axis)
-        moved[n][axis] = u[n][axis] + scale * root[n] * now.value[n][axis];
-    for (const auto& node : followers)
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        moved[node.node][axis] += node.ratio * (moved[node.master][axis] - u[node.master][axis]);
-    internal_forces(moved, forces);
-    for (const auto& node : followers)
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        forces[node.master][axis] += node.ratio * (forces[node.node][axis] - present[node.node][axis]);
-    // image of `now` at unit length, without its part along the vector before
-    double parts[3] = {};
-    const double back = iteration == 0 ? 0 : length / length_before, to_unit_length = 1 / (scale * length);
-    for (std::size_t n = 0; n < root.size(); ++n)
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        const double x = to_unit_length * root[n] * (forces[n][axis] - present[n][axis]) - back * before.value[n][axis];
-        before.value[n][axis] = x;
-        parts[axis] += x * now.value[n][axis];
-      }
-    const double along = parts[0] + parts[1] + parts[2];
-    before.subtract(along / now.squared_length, now.value, root);
-    matrix.add_row(along / length, std::sqrt(before.squared_length));
+    for (auto n = nodes.first; n < nodes.end; ++n)
+      moved_[axis][n] = u[axis][n] + scale * root_[n] * now[axis][n];
+    for (const auto& node : followers_)
+      if (node.node >= nodes.first && node.node < nodes.end)
+        moved_[axis][node.node] += static_cast<Real>(node.ratio) * scale * root_[node.master] * now[axis][node.master];
+  }
+}
+
+// Replaces `before` by an image, less `back` times `before`. `factor`: from forces to the image.
+template <class Real>
+void HighestFrequencySearch<Real>::find_image(const Nodes& nodes, const Components& forces, Real factor, Real back,
+                                              Components& before) const
+{
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (auto n = nodes.first; n < nodes.end; ++n)
+      before[axis][n] = factor * root_[n] * (forces[axis][n] - present_[axis][n]) - back * before[axis][n];
+}
+
+// Adds the forces on followers to the image at their masters.
+template <class Real>
+void HighestFrequencySearch<Real>::add_followers(const Nodes& nodes, const Components& forces, Real factor,
+                                                 Components& image) const
+{
+  auto node = std::lower_bound(followers_.begin(), followers_.end(), nodes.first,
+                               [](const auto& follower, std::int32_t first) { return follower.master < first; });
+  for (; node != followers_.end() && node->master < nodes.end; ++node)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      image[axis][node->master] += factor * root_[node->master] * static_cast<Real>(node->ratio) *
+                                   (forces[axis][node->node] - present_[axis][node->node]);
+}
+
+template <class Real>
+double HighestFrequencySearch<Real>::product(const Nodes& nodes, const Components& a, const Components& b) const
+{
+  Real sum[lanes] = {};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    in_lanes(nodes.first, nodes.end,
+             [&, x = a[axis].data(), y = b[axis].data()](std::int32_t n, int lane) { sum[lane] += x[n] * y[n]; });
+  return sum_of(sum);
+}
+
+// Subtracts `share` of the vector `now` from `before`, and finds the length and the largest displacement of the result.
+template <class Real>
+void HighestFrequencySearch<Real>::subtract(const Nodes& nodes, Real share, const Components& now, Components& before,
+                                            Size& size) const
+{
+  Real sum[lanes] = {}, most[lanes] = {};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    in_lanes(nodes.first, nodes.end,
+             [&, x = before[axis].data(), y = now[axis].data(), root = root_.data()](std::int32_t n, int lane)
+             {
+               x[n] -= share * y[n];
+               sum[lane] += x[n] * x[n];
+               const Real displacement = std::abs(x[n]) * root[n];
+               most[lane] = displacement > most[lane] ? displacement : most[lane];
+             });
+  size = { sum_of(sum), double(*std::max_element(most, most + lanes)) };
+}
+
+template <class Real>
+double HighestFrequencySearch<Real>::run(std::int32_t first, std::int32_t end, const Components& u,
+                                         const Forces& forces)
+{
+  const Nodes own{ first, end };
+  const std::size_t first_part = part_of(first), end_part = part_of(end);
+  Components *now = &now_, *before = &before_;
+  forces.find(u);
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (auto n = own.first; n < own.end; ++n)
+    {
+      present_[axis][n] = forces.found[axis][n];
+      now_[axis][n] = start_[axis][n];
+      before_[axis][n] = 0;
+    }
+  for (auto part = first_part; part < end_part; ++part)
+    subtract(nodes(part), 0, *now, *now, size_[part]);
+  forces.barrier();
+  Size of_now = total_size();
+  LanczosMatrix matrix;
+  double length_before = 1;
+  for (int iteration = 0; iteration < most_lanczos_iterations && !matrix.settled() && of_now.largest > 0; ++iteration)
+  {
+    const double length = std::sqrt(of_now.squared_length), scale = mode_amplitude(model_, iteration) / of_now.largest;
+    const auto factor = static_cast<Real>(1 / (scale * length));
+    displace(own, u, static_cast<Real>(scale), *now);
+    forces.barrier();
+    forces.find(moved_);
+    if (!followers_.empty())
+      forces.barrier();
+    for (auto part = first_part; part < end_part; ++part)
+    {
+      const Nodes at = nodes(part);
+      find_image(at, forces.found, factor, static_cast<Real>(iteration == 0 ? 0 : length / length_before), *before);
+      add_followers(at, forces.found, factor, *before);
+      added_.add_product(at.first, at.end, static_cast<Real>(1 / length), *now, *before);
+      along_[part] = product(at, *before, *now);
+    }
+    forces.barrier();
+    const double along = std::accumulate(along_.begin(), along_.end(), 0.0);
+    for (auto part = first_part; part < end_part; ++part)
+      subtract(nodes(part), static_cast<Real>(along / of_now.squared_length), *now, *before, size_[part]);
+    forces.barrier();
+    of_now = total_size();
+    matrix.add_row(along / length, std::sqrt(of_now.squared_length));
     length_before = length;
     std::swap(now, before);
   }
   return matrix.largest_eigenvalue();
 }
+
+template class HighestFrequencySearch<float>;
+template class HighestFrequencySearch<double>;
 
 }  // namespace frontalis

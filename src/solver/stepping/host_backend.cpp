@@ -59,6 +59,8 @@ void HostBackend<Real, Relaxed>::list_arrays(ArrayList& list)
     part->list_arrays(list);
   if (account_)
     account_->list_arrays(list);
+  if (search_)
+    search_->list_arrays(list);
 }
 
 template <class Real, class Relaxed>
@@ -158,6 +160,31 @@ void HostBackend<Real, Relaxed>::set(NodalField field, const NodalVectors& in)
   if (field == NodalField::displacements)
     rest();
   separate(in, field == NodalField::displacements ? u_ : v_);
+}
+
+template <class Real, class Relaxed>
+void HostBackend<Real, Relaxed>::internal_forces(NodalVectors& out)
+{
+  on_all_threads([&](const NodeShare& share) { find_forces(share, u_); });
+  interleave(found_forces(), out);
+}
+
+template <class Real, class Relaxed>
+double HostBackend<Real, Relaxed>::highest_frequency_squared()
+{
+  if (!search_)
+    search_ = std::make_unique<HighestFrequencySearch<Real>>(*model_, discretisation_, first_nodes(), u_[0].size());
+  double found = 0;
+  on_all_threads(
+      [&](const NodeShare& share)
+      {
+        const typename HighestFrequencySearch<Real>::Forces forces{ [&](const Components& u) { find_forces(share, u); },
+                                                                    found_forces(), [this] { barrier(); } };
+        const double squared = search_->run(share.first_node, share.end_node, u_, forces);
+        if (share.thread == 0)
+          found = squared;
+      });
+  return found;
 }
 
 template <class Real, class Relaxed>

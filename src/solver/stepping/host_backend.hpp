@@ -1,6 +1,7 @@
 #pragma once
 
 #include "solver/stepping/effect_parts.hpp"
+#include "solver/stepping/highest_frequency_search.hpp"
 #include "solver/stepping/step_backend.hpp"
 
 #include <algorithm>
@@ -45,6 +46,8 @@ public:
   std::vector<Reaction> reactions() const override;
   std::vector<RigidTransform> bodies() const override;
   std::int64_t lost_points() const override;
+  void internal_forces(NodalVectors& out) override;
+  double highest_frequency_squared() override;
   void skin(SkinState& out) override;
 
 protected:
@@ -62,6 +65,15 @@ protected:
   /// Inverse of interleave(); the components may have more entries than there are nodes.
   static void separate(const NodalVectors& in, Components& out);
 
+  /// Runs task(share) on every thread of the backend. Inside the task, barrier() waits for all threads.
+  virtual void on_all_threads(const std::function<void(const NodeShare&)>& task) = 0;
+  virtual void barrier() = 0;
+  /// First node of each plane, and the number of all nodes.
+  virtual std::vector<std::int32_t> first_nodes() const = 0;
+  /// Finds the internal forces [N] at displacements u on the share's nodes. found_forces() returns them.
+  virtual void find_forces(const NodeShare& share, const Components& u) = 0;
+  virtual const Components& found_forces() const = 0;
+
   /// The parts of effects that are not idle.
   std::vector<NodePart<Real>*> active_parts() const;
 
@@ -71,6 +83,7 @@ protected:
 
 private:
   std::vector<std::unique_ptr<NodePart<Real>>> parts_;
+  std::unique_ptr<HighestFrequencySearch<Real>> search_;  // null until the first search
 };
 
 }  // namespace frontalis

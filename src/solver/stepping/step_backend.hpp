@@ -7,7 +7,6 @@
 #include "solver/stepping/step_plan.hpp"
 
 #include <memory>
-#include <optional>
 #include <string>
 
 namespace frontalis
@@ -74,11 +73,11 @@ public:
   virtual void save(std::unique_ptr<BackendState>& to) = 0;
   virtual void restore(const BackendState& from) = 0;
 
-  /// Internal forces [N] at `displacements`; null stands for the present displacements.
-  virtual void internal_forces(const NodalVectors* displacements, NodalVectors& out) = 0;
-  /// Largest eigenvalue [1/s2] of M^-1/2 K M^-1/2 at the present displacements with held nodes fixed. Returns nothing
-  /// if the backend cannot search for it faster than internal_forces() allows.
-  virtual std::optional<double> highest_frequency_squared() { return std::nullopt; }
+  /// Internal forces [N] at the present displacements.
+  virtual void internal_forces(NodalVectors& out) = 0;
+  /// Squared highest frequency [1/s2] of the assembled model at the present displacements and activations; see
+  /// highest_frequency_search.hpp.
+  virtual double highest_frequency_squared() = 0;
   virtual Monitor monitor() = 0;
   /// Work since the energy account was opened; with `open`, the account is opened now. Called only if
   /// SolverSettings::ledger is set.

@@ -5,7 +5,6 @@
 #include "frontalis/solver/damping.hpp"
 #include "frontalis/solver/rigid_motion.hpp"
 #include "solver/stepping/dynamic_relaxation.hpp"
-#include "solver/stepping/highest_frequency_search.hpp"
 #include "solver/stepping/muscle_response.hpp"
 
 #include <fmt/format.h>
@@ -190,17 +189,7 @@ void TimeStepper::renew_assembled_estimate(const Controls& asked)
   const auto search = [this](const std::vector<float>& activation)
   {
     conditions_.activation = effects_.felt(activation);
-    if (const auto found = backend_->highest_frequency_squared())
-      return *found;
-    NodalVectors u;
-    displacements(u);
-    const auto forces_at = [this](const NodalVectors& at, NodalVectors& out)
-    {
-      backend_->internal_forces(&at, out);
-      for (const auto& stiffness : discretisation_.added)
-        stiffness->add_forces(*model_, at, out);
-    };
-    return highest_frequency_squared(*model_, discretisation_, u, forces_at);
+    return backend_->highest_frequency_squared();
   };
   std::vector<float> most = motion_.activation;
   for (std::size_t m = 0; m < most.size(); ++m)
@@ -241,7 +230,7 @@ StepPlan TimeStepper::plan_to(const Controls& next, const TimeStepController::Ch
 
 void TimeStepper::internal_forces(NodalVectors& out)
 {
-  backend_->internal_forces(nullptr, out);
+  backend_->internal_forces(out);
   NodalVectors pushing(out.size());
   EnergyLedger unused = empty_ledger();
   backend_->add_energies(false, pushing, unused);
