@@ -12,21 +12,30 @@ static std::uint32_t blocks_of_masters(const LanczosIteration& g) { return (g.ma
 __device__ __forceinline__ double2 joined(const double2& a, const double2& b) { return { a.x + b.x, fmax(a.y, b.y) }; }
 __device__ __forceinline__ double joined(double a, double b) { return a + b; }
 
+__device__ __forceinline__ double of_lane(double value, int distance)
+{
+  return __shfl_down_sync(0xffffffffu, value, distance);
+}
+__device__ __forceinline__ double2 of_lane(const double2& value, int distance)
+{
+  return { of_lane(value.x, distance), of_lane(value.y, distance) };
+}
+
 /// Joins the values of all threads of a block in a fixed order. All threads receive the result.
 template <class Value>
-__device__ Value joined_by_block(const Value& own)
+__device__ Value joined_by_block(Value own)
 {
-  __shared__ Value values[block];
+  __shared__ Value of_warp[block / 32];
+  for (int distance = 16; distance > 0; distance /= 2)
+    own = joined(own, of_lane(own, distance));
   __syncthreads();
-  values[threadIdx.x] = own;
-  for (int half = block / 2; half > 0; half /= 2)
-  {
-    __syncthreads();
-    if (threadIdx.x < half)
-      values[threadIdx.x] = joined(values[threadIdx.x], values[threadIdx.x + half]);
-  }
+  if (threadIdx.x % 32 == 0)
+    of_warp[threadIdx.x / 32] = own;
   __syncthreads();
-  return values[0];
+  Value all = of_warp[0];
+  for (int warp = 1; warp < block / 32; ++warp)
+    all = joined(all, of_warp[warp]);
+  return all;
 }
 
 __device__ __forceinline__ float root_of(const LanczosIteration& g, std::uint32_t node)

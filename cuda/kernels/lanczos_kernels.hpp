@@ -5,8 +5,9 @@
 namespace frontalis
 {
 
-/// Number of thread blocks of the kernels that sum over a vector, each of which reports sums over its part.
-constexpr int lanczos_blocks = 128;
+/// Number of thread blocks of the kernels that sum over a vector, each of which reports sums over its part. So many
+/// blocks fill the largest GPUs.
+constexpr int lanczos_blocks = 256;
 
 /// A node whose displacement is `ratio` times that of its master (Discretisation::Follower).
 struct SearchFollower
