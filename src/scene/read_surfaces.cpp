@@ -166,6 +166,15 @@ void read_head(Mapping& mapping, MeshFolder& folder, const std::vector<Surface>&
     read_parts(many, one, "head", {}, {}, shape, parts);
 }
 
+/// Whether the ends of two curves lie in opposite directions.
+bool run_against(const std::vector<Vector3>& a, const std::vector<Vector3>& b)
+{
+  double product = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    product += (a.back()[axis] - a.front()[axis]) * (b.back()[axis] - b.front()[axis]);
+  return product < 0;
+}
+
 /// Reads a muscle between curves.
 void read_muscle_shape(Mapping& mapping, Shape& shape)
 {
@@ -180,6 +189,9 @@ void read_muscle_shape(Mapping& mapping, Shape& shape)
       points.push_back(point.vector(Dimension::length, any_number, {}));
     if (points.size() < least && !curve.faulty())
       curve.fault("found {} positions; must be at least {}", points.size(), least);
+    if (points.size() >= least && !shape.ring && !shape.curves.empty() && shape.curves.back().size() >= least &&
+        run_against(points, shape.curves.back()))
+      curve.fault("runs against the curve before it; all curves must run in the same order, or the muscle is twisted");
     shape.curves.push_back(points);
   }
   if (shape.curves.size() < 2 && !curves.faulty())
