@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 using namespace frontalis;
 
@@ -77,6 +78,28 @@ struct Chain
   }
 };
 
+// Stiffness [N/m] at one node.
+class Spring : public AddedStiffness
+{
+public:
+  Spring(const Model& model, std::int32_t node, double of) : stiffness_(of)
+  {
+    for (std::size_t e = 0; e < model.voxel_nodes.size() && binding_.voxel.empty(); ++e)
+      for (int b = 0; b < 8; ++b)
+        if (model.voxel_nodes[e][b] == node)
+        {
+          binding_.voxel = { static_cast<std::int32_t>(e) };
+          binding_.coordinates = { { { float(b & 1), float(b >> 1 & 1), float(b >> 2 & 1) } } };
+        }
+  }
+  double in_voxel(std::size_t) const override { return 0; }
+  std::vector<PointStiffness> matrices() const override { return { { &binding_, { { 0, 0, stiffness_ } } } }; }
+
+private:
+  double stiffness_;
+  Binding binding_;
+};
+
 }  // namespace
 
 TEST(HighestFrequencySearch, finds_that_of_a_chain)
@@ -94,6 +117,30 @@ TEST(HighestFrequencySearch, finds_one_stiff_spring)
   Chain chain;
   chain.stiff = 3;
   EXPECT_NEAR(chain.search() / (7.2 * stiffness / chain.mass), 1, 5e-3);
+}
+
+// A spring from one mass of a long chain to the ground, K, gives the squared frequency (2 k + sqrt(4 k^2 + K^2)) / m:
+// the amplitude falls by exp(-s) from node to node, 2 sinh s = K / k.
+TEST(HighestFrequencySearch, finds_the_stiffness_that_an_effect_adds_at_a_node)
+{
+  Chain chain;
+  chain.discretisation.added = { std::make_shared<Spring>(chain.model, chain.nodes() / 2, 5 * stiffness) };
+  EXPECT_NEAR(chain.search() / ((2 + std::sqrt(29.0)) * stiffness / chain.mass), 1, 5e-3);
+}
+
+TEST(HighestFrequencySearch, adds_stiffness_at_a_joint_to_both_nodes)
+{
+  Model model = bar();
+  const auto middle = static_cast<std::int32_t>(model.nodes.size() / 2);
+  model.joints.push_back({ middle, middle - 1 });
+  Chain chain(model);
+  for (std::int32_t n = 0; n < chain.nodes(); ++n)
+    if (n < middle - 1 || n > middle)
+      chain.discretisation.held.push_back(n);
+  // Springs of stiffness k on both sides of the two masses, and one at each of them:
+  chain.discretisation.added = { std::make_shared<Spring>(chain.model, middle, 3 * stiffness),
+                                 std::make_shared<Spring>(chain.model, middle - 1, 4 * stiffness) };
+  EXPECT_NEAR(chain.search() / (9 * stiffness / (2 * chain.mass)), 1, 5e-3);
 }
 
 TEST(HighestFrequencySearch, is_little_disturbed_by_the_curvature_of_laws)
