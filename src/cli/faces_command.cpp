@@ -90,6 +90,7 @@ void measure_faces(FacesOptions& options)
   }
   std::vector<FaceRow> rows;
   std::vector<std::string> faults;
+  bool interrupted = false;
   for (const std::string& name : names)
   {
     running = name;
@@ -100,6 +101,12 @@ void measure_faces(FacesOptions& options)
       const auto found = measure_expression(model, name, known == people.expressions.end() ? nothing : known->second,
                                             options.settings);
       rows.insert(rows.end(), found.begin(), found.end());
+    }
+    catch (const Interrupted&)
+    {
+      // The figures of the expressions before are kept.
+      interrupted = true;
+      break;
     }
     catch (const Error& error)
     {
@@ -115,6 +122,8 @@ void measure_faces(FacesOptions& options)
     write_text(options.table, faces_table(rows, options.all_landmarks).markdown());
   if (!options.pictures.empty())
     write_contact_sheet(pictures, options.columns, options.pictures + "/faces");
+  if (interrupted)
+    throw Interrupted();
   const auto compared =
       std::count_if(rows.begin(), rows.end(), [](const FaceRow& row) { return row.most == row.most; });
   const auto failed = std::count_if(rows.begin(), rows.end(), [](const FaceRow& row) { return !row.passed(); });
