@@ -120,7 +120,7 @@ void measure_faces(FacesOptions& options)
     write_text(options.json, faces_table(rows, true).json());
   if (!options.table.empty())
     write_text(options.table, faces_table(rows, options.all_landmarks).markdown());
-  if (!options.pictures.empty())
+  if (!options.pictures.empty() && !pictures.empty())
     write_contact_sheet(pictures, options.columns, options.pictures + "/faces");
   if (interrupted)
     throw Interrupted();
