@@ -3,7 +3,6 @@
 #include "solver/stepping/added_stiffness_matrix.hpp"
 
 #include <array>
-#include <array>
 #include <functional>
 #include <vector>
 
