@@ -189,7 +189,7 @@ TEST(Loads, OnAHollowAreCarriedByTheTissueAroundIt)
   load.kind = SceneLoad::Kind::pressure;
   load.surface = "hollow";
   load.crop = eighth;
-  load.value = { -10, 0, 0 };
+  load.value = { 10, 0, 0 };
   scene.loads = { load };
   for (const bool outside : { true, false })
   {
@@ -202,5 +202,45 @@ TEST(Loads, OnAHollowAreCarriedByTheTissueAroundIt)
     for (const auto& coordinates : model.loads[0].binding.coordinates)
       for (const float c : coordinates)
         EXPECT_TRUE(c > -0.5f && c < 1.5f) << c;
+    // The pressure presses on the tissue: the normals point to the middle of the hollow.
+    double volume = 0;
+    for (const auto& t : model.loads[0].mesh.triangles)
+    {
+      std::array<std::array<double, 3>, 3> v{};
+      for (int c = 0; c < 3; ++c)
+        v[c] = transformed(model.to_scene, model.loads[0].mesh.vertices[t[c]]);
+      volume += (v[0][0] * (v[1][1] * v[2][2] - v[1][2] * v[2][1]) + v[0][1] * (v[1][2] * v[2][0] - v[1][0] * v[2][2]) +
+                 v[0][2] * (v[1][0] * v[2][1] - v[1][1] * v[2][0])) /
+                6;
+    }
+    EXPECT_NEAR(volume, -M_PI / 6 * std::pow(20e-3, 3), 0.02 * 4e-6);
   }
+}
+
+TEST(Loads, SpareTrianglesThatHaveNoTissueBehindThem)
+{
+  Scene scene = plain_scene(2e-3);
+  scene.surfaces = { sphere_surface("skin", { 0, 0, 0 }, 30e-3, 2e-3),
+                     sphere_surface("hollow", { 0, 0, 0 }, 12e-3, 1e-3),
+                     sphere_surface("bone", { 12e-3, 0, 0 }, 10e-3, 1e-3) };
+  scene.volumes = { volume_inside("tissue", { "skin" }, "fat", true) };
+  scene.volumes[0].without = { "hollow" };
+  scene.volumes[0].outside = { "bone" };
+  SceneLoad load;
+  load.name = "pressure";
+  load.kind = SceneLoad::Kind::pressure;
+  load.surface = "hollow";
+  load.value = { 10, 0, 0 };
+  scene.loads = { load };
+  const Model model = bake(scene);
+  ASSERT_EQ(model.loads.size(), 1u);
+  double deepest = 0, farthest = 0;
+  for (const auto& vertex : model.loads[0].mesh.vertices)
+  {
+    const auto p = transformed(model.to_scene, vertex);
+    deepest = std::max(deepest, 10e-3 - std::hypot(p[0] - 12e-3, p[1], p[2]));
+    farthest = std::max(farthest, -p[0]);
+  }
+  EXPECT_LT(deepest, 4e-3);  // the hollow reaches 10 mm into the bone
+  EXPECT_NEAR(farthest, 12e-3, 0.1e-3);
 }

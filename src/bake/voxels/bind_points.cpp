@@ -41,9 +41,7 @@ public:
       set_coordinates(local, voxel, coordinates);
       return true;
     }
-    VoxelPlace cell{};
-    for (int a = 0; a < 3; ++a)
-      cell[a] = static_cast<std::int32_t>(std::floor(std::max(-1e6, std::min(1e6, local[a] / model_.spacing[a]))));
+    const VoxelPlace cell = cell_of(local);
     voxel = index_.find(cell);
     if (voxel < 0)
       voxel = nearest(local, inwards, cell);
@@ -52,7 +50,23 @@ public:
     return voxel >= 0;
   }
 
+  /// Whether tissue lies behind a point of a surface. `inwards`: as in bind().
+  bool has_tissue_behind(const Vector3d& local, const Vector3d& inwards) const
+  {
+    const double edge = model_.spacing[0];
+    return index_.find(cell_of(local + 0.02 * edge * inwards)) >= 0 ||
+           index_.find(cell_of(local + 0.5 * edge * inwards)) >= 0;
+  }
+
 private:
+  VoxelPlace cell_of(const Vector3d& local) const
+  {
+    VoxelPlace cell{};
+    for (int a = 0; a < 3; ++a)
+      cell[a] = static_cast<std::int32_t>(std::floor(std::max(-1e6, std::min(1e6, local[a] / model_.spacing[a]))));
+    return cell;
+  }
+
   void set_coordinates(const Vector3d& local, std::int32_t voxel, std::array<float, 3>& coordinates) const
   {
     const VoxelPlace place = rest_place(model_, model_.voxels[voxel]);
@@ -103,7 +117,7 @@ private:
   double extrapolation_;
 };
 
-/// Whether tissue surrounds a surface, such as that of a cavity, whose normals then point into the tissue.
+/// Whether tissue surrounds a surface, such as that of a hollow, whose normals then point into the tissue.
 bool is_surrounded(const Scene& scene, const std::string& surface)
 {
   const auto names = [&](const std::vector<std::string>& list)
@@ -117,31 +131,51 @@ bool is_surrounded(const Scene& scene, const std::string& surface)
   return surrounded && !surrounds;
 }
 
-/// Unit vectors at the vertices of a surface, local axes, opposite to its normals or, if tissue surrounds it, along
-/// them.
-std::vector<Vector3d> inward_normals(const TriangleMesh& surface, bool surrounded, const LocalFrame& frame)
+/// Normal of a triangle into the tissue, local axes, twice as long as its area.
+Vector3d inward_normal(const TriangleMesh& surface, const Triangle& t, const LocalFrame& frame)
+{
+  const auto v = corners(surface, t);
+  return frame.turn(Vector3d((v[2] - v[0]).cross(v[1] - v[0])));
+}
+
+/// Unit vectors at the vertices of a surface, local axes, opposite to its normals.
+std::vector<Vector3d> inward_normals(const TriangleMesh& surface, const LocalFrame& frame)
 {
   std::vector<Vector3d> normals(surface.vertices.size(), Vector3d::Zero());
   for (const Triangle& t : surface.triangles)
-  {
-    const auto v = corners(surface, t);
-    const Vector3d normal = frame.turn(Vector3d((v[2] - v[0]).cross(v[1] - v[0])));
     for (const std::int32_t c : t)
-      normals[c] += normal;
-  }
+      normals[c] += inward_normal(surface, t, frame);
   for (Vector3d& normal : normals)
-    normal = (surrounded ? -1 : 1) * normal.normalized();
+    normal.normalize();
   return normals;
 }
 
-BoundMesh bind_mesh(const TriangleMesh& whole, bool surrounded, const Region& crop, const LocalFrame& frame,
-                    const PointBinder& binder, BakeMonitor& monitor)
+/// The triangles of a load that have tissue behind them, with normals out of the tissue. Others lie in bone or in a
+/// cavity; their part of the load would act on the nearest tissue, however little that is.
+TriangleMesh loaded_mesh(const Scene& scene, const SceneLoad& load, TriangleMesh surface, const LocalFrame& frame,
+                         const PointBinder& binder)
+{
+  if (is_surrounded(scene, load.surface))
+    for (Triangle& t : surface.triangles)
+      std::swap(t[1], t[2]);
+  std::vector<bool> keep;
+  for (const Triangle& t : surface.triangles)
+  {
+    const auto v = corners(surface, t);
+    keep.push_back(binder.has_tissue_behind(frame.to_local(Vector3d((v[0] + v[1] + v[2]) / 3)),
+                                            inward_normal(surface, t, frame).normalized()));
+  }
+  return keep_triangles(surface, keep);
+}
+
+BoundMesh bind_mesh(const TriangleMesh& whole, const Region& crop, const LocalFrame& frame, const PointBinder& binder,
+                    BakeMonitor& monitor)
 {
   const TriangleMesh surface = cut_mesh(whole, crop);
   const std::size_t count = surface.vertices.size();
   std::vector<std::int32_t> voxel(count, -1);
   std::vector<std::array<float, 3>> coordinates(count);
-  const std::vector<Vector3d> inwards = inward_normals(surface, surrounded, frame);
+  const std::vector<Vector3d> inwards = inward_normals(surface, frame);
   parallel_for(monitor, count, points_per_task,
                [&](std::size_t v)
                { binder.bind(frame.to_local(to_vector(surface.vertices[v])), inwards[v], voxel[v], coordinates[v]); });
@@ -288,7 +322,7 @@ double extrapolation_of(const Scene& scene, const Model& model)
 BoundMesh bind_mesh(const TriangleMesh& whole, const Region& crop, const LocalFrame& frame, const Model& model,
                     double extrapolation, BakeMonitor& monitor)
 {
-  return bind_mesh(whole, false, crop, frame, PointBinder(model, frame, extrapolation), monitor);
+  return bind_mesh(whole, crop, frame, PointBinder(model, frame, extrapolation), monitor);
 }
 
 void bind_surfaces(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,
@@ -303,7 +337,7 @@ void bind_surfaces(const Scene& scene, const PreparedSurfaces& surfaces, const L
     TriangleMesh surface = cut_mesh(skin.mesh(), scene.skin.crop);
     if (!scene.films.empty())
       add_film(scene, surface, model, monitor);
-    BoundMesh bound = bind_mesh(surface, false, Region(), frame, binder, monitor);
+    BoundMesh bound = bind_mesh(surface, Region(), frame, binder, monitor);
     if (bound.mesh.triangles.empty())
       throw failure(
           "{}: skin: no triangle of surface '{}' lies in the crop and within {} of the tissue; check its crop and the "
@@ -336,13 +370,14 @@ void bind_surfaces(const Scene& scene, const PreparedSurfaces& surfaces, const L
     else
     {
       const std::string place = place_in_scene(scene, "load", load);
-      BoundMesh bound = bind_mesh(named_surface(surfaces, load.surface, place).mesh(),
-                                  is_surrounded(scene, load.surface), load.crop, frame, binder, monitor);
+      const TriangleMesh surface = cut_mesh(named_surface(surfaces, load.surface, place).mesh(), load.crop);
+      BoundMesh bound = bind_mesh(loaded_mesh(scene, load, surface, frame, binder), Region(), frame, binder, monitor);
+      const std::size_t left_out = surface.triangles.size() - bound.mesh.triangles.size();
       if (bound.mesh.triangles.empty())
-        throw failure("{}: no triangle of surface '{}' lies in its crop and within {} of the tissue", place,
-                      load.surface, length_text(extrapolation, scene.unit));
-      if (bound.too_far > 0)
-        monitor.found("load '{}': {} triangles left out, too far from the tissue", load.name, bound.too_far);
+        throw failure("{}: no triangle of surface '{}' in its crop has tissue behind it", place, load.surface);
+      if (left_out > 0)
+        monitor.found("load '{}': {} of {} triangles left out, because no tissue is behind them", load.name, left_out,
+                      surface.triangles.size());
       out.kind = load.kind == SceneLoad::Kind::pressure ? Load::Kind::pressure : Load::Kind::traction;
       if (out.kind == Load::Kind::pressure)
         out.value = load.value;

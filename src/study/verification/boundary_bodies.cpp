@@ -203,7 +203,7 @@ BoundaryBody pressed_sphere(double poisson)
   load.kind = SceneLoad::Kind::pressure;
   load.surface = "hollow";
   load.crop = body.scene.skin.crop;
-  load.value = { -pressure, 0, 0 };  // the normals of the hollow point into the tissue
+  load.value = { pressure, 0, 0 };
   body.scene.loads = { load };
   body.exact = [=](const Point& p) -> Point
   {
