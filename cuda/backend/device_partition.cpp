@@ -46,8 +46,12 @@ VoxelCut::VoxelCut(const Model& model, const CutChoice& choice)
                                 [](const Material& material) { return material.law != Law::neo_hookean; });
   stress_apart = laws || strips->filled_by_fibres() < dense_fibres;
   // If the strips compute fibres themselves, those with fibres take longer than the others, and short strips share the
-  // work more evenly. Otherwise strips are lengthened until the device can run all of them at the same time.
-  while (stress_apart && strips->strips.size() > choice.most_strips && cutting.planes < choice.most_planes)
+  // work more evenly. Otherwise strips are lengthened until the device can run nearly all of them at the same time. The
+  // rest, a tenth, are the shortest ones, which start as the next shortest ones end.
+  constexpr double surplus = 1.1;
+  while (stress_apart &&
+         static_cast<double>(strips->strips.size()) > surplus * static_cast<double>(choice.most_strips) &&
+         cutting.planes < choice.most_planes)
   {
     const double wanted = cutting.planes * (static_cast<double>(strips->strips.size()) / choice.most_strips);
     cutting.planes = std::clamp(static_cast<int>(wanted), cutting.planes + 1, choice.most_planes);

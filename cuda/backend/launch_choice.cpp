@@ -69,7 +69,7 @@ CutChoice choose_cut(const Model& model, Effects effects)
                         : from_environment("FRONTALIS_CUDA_PATCHES", expected_turns(model, processors, cut.patch_bytes),
                                            0, most_turns);
   cut.patches = { processors, turns };
-  // All strips should run at the same time, because a few that start later would double the time.
+  // Nearly all strips should run at the same time, because a second round would take as long as the first.
   cut.most_strips = static_cast<std::size_t>(strip_blocks(effects)) * (step_block / 32) * processors;
   cut.strips.rows = strip_rows(effects);
   const double planes =

@@ -168,8 +168,8 @@ struct Builder
 // Packs pieces of about equal length into warps, in order.
 std::vector<std::vector<Piece>> pack(const std::vector<Piece>& pieces)
 {
-  // A few warps stay open, so that a large piece does not close a warp that small pieces could fill.
-  constexpr std::size_t open_warps = 16;
+  // Many warps stay open, so that a large piece does not close a warp that small pieces could fill.
+  constexpr std::size_t open_warps = 128;
   std::vector<std::vector<Piece>> warps;
   std::vector<std::int32_t> used;
   std::size_t first_open = 0;
