@@ -30,7 +30,7 @@ struct CutChoice
   std::size_t patch_bytes = 0;    ///< shared memory available for the patches of a block
   StripSettings strips;
   std::size_t most_strips = 0;  ///< number of strips that the device runs at the same time
-  int most_planes = 0;          ///< strips may be lengthened to this number of planes to keep within `most_strips`
+  int most_planes = 0;          ///< strips may be lengthened to this number of planes to be about `most_strips`
 };
 
 /// The patches or strips of a model.
