@@ -41,6 +41,8 @@ public:
   void restore(const BackendState& from) override;
   void internal_forces(NodalVectors& out) override;
   double highest_frequency_squared() override;
+  std::vector<FoundMode> modes_above(double frequency_squared) override;
+  void masses_changed(const std::vector<std::int32_t>& nodes) override;
   Monitor monitor() override;
   Work work(bool open) override;
   void add_energies(bool open, NodalVectors& forces, EnergyLedger& ledger) override;
@@ -78,6 +80,8 @@ private:
   };
   void prepare_search();
   void prepare_followers(const std::vector<double>& root);
+  void keep_vector(int iteration, const float4* vector);
+  std::vector<ModeShare> shares_in(const std::vector<double>& mode);
 
   const std::string remark_;  // appended to the description
   DeviceModel device_;

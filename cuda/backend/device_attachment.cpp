@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <numeric>
 #include <tuple>
+#include <type_traits>
+#include <unordered_map>
 
 namespace frontalis
 {
@@ -104,6 +106,26 @@ DeviceAttachment::DeviceAttachment(const AttachedTables& tables)
       patch_groups_(tables.patch_groups)
 {
   reset();
+}
+
+void DeviceAttachment::masses_changed(const std::vector<InverseMass>& masses)
+{
+  if (empty())
+    return;
+  std::unordered_map<std::uint32_t, float> mass_of;
+  for (const InverseMass& mass : masses)
+    mass_of[mass.node] = 1 / mass.own;
+  const auto change = [&](auto& array, auto node_of)
+  {
+    std::vector<std::decay_t<decltype(*array.data())>> entries;
+    array.download(entries);
+    for (auto& entry : entries)
+      if (const auto found = mass_of.find(node_of(entry)); found != mass_of.end())
+        entry.mass = found->second;
+    array.upload(entries.data(), entries.size());
+  };
+  change(groups_, [](const AttachedGroup& group) { return group.master; });
+  change(ties_, [](const AttachedTie& tie) { return tie.node; });
 }
 
 void DeviceAttachment::describe(StepArguments& g) const

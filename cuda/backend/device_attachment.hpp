@@ -1,6 +1,7 @@
 #pragma once
 
 #include "cuda/backend/device_memory.hpp"
+#include "cuda/kernels/lanczos_kernels.hpp"
 #include "cuda/kernels/step_kernel.hpp"
 #include "solver/stepping/attached_nodes.hpp"
 
@@ -37,6 +38,8 @@ public:
                    const VoxelPatches* patches);
 
   bool empty() const { return groups_.size() == 0; }
+  /// Gives nodes other masses, where they are masters or attached.
+  void masses_changed(const std::vector<InverseMass>& masses);
   /// Sets the members of `g` that describe groups.
   void describe(StepArguments& g) const;
   void list_arrays(ArrayList& list) override;

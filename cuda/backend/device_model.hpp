@@ -85,6 +85,10 @@ public:
   std::vector<DevicePart*> running_parts() const;
   DeviceLoads& loads() { return loads_; }
   const DeviceLoads& loads() const { return loads_; }
+  /// Inverse masses in the frequency bound; null if they are those of the nodes.
+  float* inverse_bound_masses() const { return mobility_.data(); }
+  /// Changes the masses of attached nodes.
+  void masses_changed(const std::vector<InverseMass>& masses) { attachment_.masses_changed(masses); }
   DeviceViscosity& viscosity() { return viscosity_; }
   const DeviceViscosity& viscosity() const { return viscosity_; }
 

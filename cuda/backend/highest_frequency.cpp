@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <numeric>
 #include <utility>
 
@@ -59,6 +60,8 @@ void CudaSolver::prepare_followers(const std::vector<double>& root)
   for (const auto& node : discretisation_.followers)
     followers.push_back(
         { device_.device_node()[node.node], device_.device_node()[node.master], static_cast<float>(node.ratio) });
+  for (const auto& node : discretisation_.followers)
+    search_->following[node.master] += node.ratio * node.ratio * discretisation_.node_mass[node.node];
   std::stable_sort(followers.begin(), followers.end(),
                    [](const SearchFollower& a, const SearchFollower& b) { return a.master < b.master; });
   std::vector<std::uint32_t> begin;
@@ -97,7 +100,9 @@ double CudaSolver::highest_frequency_squared()
   g.now = s.now.data();
   g.before = s.before.data();
   g.moved = s.moved.data();
+  const bool keeps_vectors = model_->mass_scaling.in_motion > 0;
   LanczosMatrix matrix;
+  std::vector<double> lengths;
   std::vector<double2> sizes;
   std::vector<double> along;
   for (int i = 0; i < most_lanczos_iterations && !matrix.settled();)
@@ -110,6 +115,8 @@ double CudaSolver::highest_frequency_squared()
       g.size = s.sizes.data() + i * lanczos_blocks;
       g.size_next = s.sizes.data() + (i + 1) * lanczos_blocks;
       g.along = s.along.data() + i * lanczos_blocks;
+      if (keeps_vectors)
+        keep_vector(i, g.now);
       require(launch_displace(g, stream_), "displacing nodes");
       queue_forces(s.moved.data(), activation.data(), s.forces.data(), true);
       require(launch_lanczos_product(g, stream_), "a product with the stiffness");
@@ -127,10 +134,93 @@ double CudaSolver::highest_frequency_squared()
                                          [](double sum, const double2& part) { return sum + part.x; }));
       };
       const double* const product = along.data() + row * lanczos_blocks;
-      matrix.add_row(std::accumulate(product, product + lanczos_blocks, 0.0) / length(row), length(row + 1));
+      lengths.push_back(length(row));
+      matrix.add_row(std::accumulate(product, product + lanczos_blocks, 0.0) / lengths.back(), length(row + 1));
     }
   }
+  s.matrix = matrix;
+  s.lengths = lengths;
   return matrix.largest_eigenvalue();
+}
+
+void CudaSolver::keep_vector(int iteration, const float4* vector)
+{
+  auto& kept = search_->vectors;
+  if (kept.size() <= static_cast<std::size_t>(iteration))
+    kept.emplace_back(device_.nodes());
+  require(cudaMemcpyAsync(kept[iteration].data(), vector, kept[iteration].bytes(), cudaMemcpyDeviceToDevice, stream_),
+          "keeping a vector of a search");
+}
+
+std::vector<FoundMode> CudaSolver::modes_above(double frequency_squared)
+{
+  FrequencySearch& s = *search_;
+  if (s.node_of_device.empty())
+  {
+    s.shares = DeviceArray<uint2>(static_cast<std::size_t>(1 / least_mode_share));
+    s.listed = DeviceArray<std::uint32_t>(1);
+    s.node_of_device.resize(device_.nodes());
+    for (std::size_t n = 0; n < model_->nodes.size(); ++n)
+      s.node_of_device[device_.device_node()[n]] = static_cast<std::int32_t>(n);
+  }
+  std::vector<FoundMode> modes;
+  for (const LanczosMatrix::Eigenpair& pair : s.matrix.eigenpairs_above(frequency_squared))
+    modes.push_back({ pair.value, shares_in(pair.vector) });
+  return modes;
+}
+
+// `mode`: components along the vectors at length 1.
+std::vector<ModeShare> CudaSolver::shares_in(const std::vector<double>& mode)
+{
+  static_assert(most_lanczos_iterations <= VectorSum::most_vectors, "a mode may have that many vectors");
+  FrequencySearch& s = *search_;
+  VectorSum g{};
+  for (; g.vectors < static_cast<int>(mode.size()); ++g.vectors)
+  {
+    g.vector[g.vectors] = s.vectors[g.vectors].data();
+    g.component[g.vectors] = static_cast<float>(mode[g.vectors] / s.lengths[g.vectors]);
+  }
+  g.nodes = static_cast<std::uint32_t>(device_.nodes());
+  g.least = least_mode_share;
+  g.list = s.shares.data();
+  g.listed = s.listed.data();
+  require(cudaMemsetAsync(s.listed.data(), 0, s.listed.bytes(), stream_), "emptying a list");
+  require(launch_list_shares(g, stream_), "listing a mode");
+  synchronise();
+  std::vector<std::uint32_t> listed;
+  std::vector<uint2> list;
+  s.listed.download(listed);
+  s.shares.download(list);
+  list.resize(std::min<std::size_t>(list.size(), listed[0]));
+  std::vector<ModeShare> shares;
+  for (const uint2& entry : list)
+  {
+    float share;
+    std::memcpy(&share, &entry.y, sizeof share);
+    shares.push_back({ s.node_of_device[entry.x], share });
+  }
+  std::sort(shares.begin(), shares.end(), [](const ModeShare& a, const ModeShare& b) { return a.node < b.node; });
+  return shares;
+}
+
+void CudaSolver::masses_changed(const std::vector<std::int32_t>& nodes)
+{
+  synchronise();
+  std::vector<InverseMass> masses;
+  for (const std::int32_t n : nodes)
+  {
+    const double own = discretisation_.node_mass[n];
+    const auto group = search_->following.find(n);
+    const double following = group == search_->following.end() ? 0 : group->second;
+    masses.push_back(
+        { device_.device_node()[n], static_cast<float>(1 / own), static_cast<float>(1 / (own + following)) });
+  }
+  const DeviceArray<InverseMass> changes(masses);
+  require(launch_set_inverse_masses(changes.data(), static_cast<std::uint32_t>(masses.size()), u_[0].data(),
+                                    u_[1].data(), device_.inverse_bound_masses(), search_->mobility.data(), stream_),
+          "setting masses");
+  device_.masses_changed(masses);
+  synchronise();
 }
 
 }  // namespace cuda

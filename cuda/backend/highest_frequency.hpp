@@ -4,6 +4,9 @@
 #include "cuda/kernels/lanczos_kernels.hpp"
 #include "solver/stepping/highest_frequency_search.hpp"
 
+#include <unordered_map>
+#include <vector>
+
 namespace frontalis
 {
 namespace cuda
@@ -19,6 +22,16 @@ struct CudaSolver::FrequencySearch
   DeviceArray<float> mobility;
   DeviceArray<SearchFollower> followers;
   DeviceArray<std::uint32_t> follower_begin;
+
+  std::unordered_map<std::int32_t, double> following;  // mass that follows a node, times squared ratios [kg]
+
+  // for modes_above()
+  std::vector<DeviceArray<float4>> vectors;  // of the latest iterations
+  std::vector<double> lengths;               // of these vectors
+  LanczosMatrix matrix;
+  DeviceArray<uint2> shares;
+  DeviceArray<std::uint32_t> listed;
+  std::vector<std::int32_t> node_of_device;
 
   explicit FrequencySearch(std::size_t nodes)
       : start(nodes),
@@ -36,8 +49,8 @@ struct CudaSolver::FrequencySearch
 
   std::size_t bytes() const
   {
-    return 6 * start.bytes() + sizes.bytes() + along.bytes() + mobility.bytes() + followers.bytes() +
-           follower_begin.bytes();
+    return (6 + vectors.size()) * start.bytes() + shares.bytes() + listed.bytes() + sizes.bytes() + along.bytes() +
+           mobility.bytes() + followers.bytes() + follower_begin.bytes();
   }
 };
 

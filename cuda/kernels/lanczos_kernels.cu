@@ -132,7 +132,54 @@ __global__ void __launch_bounds__(block) orthogonalise(const __grid_constant__ L
     g.size_next[blockIdx.x] = size;
 }
 
+__global__ void __launch_bounds__(block) list_shares(const __grid_constant__ VectorSum g)
+{
+  for (std::uint32_t n = blockIdx.x * block + threadIdx.x; n < g.nodes; n += gridDim.x * block)
+  {
+    float x = 0, y = 0, z = 0;
+    for (int i = 0; i < g.vectors; ++i)
+    {
+      const float4 along = g.vector[i][n];
+      x += g.component[i] * along.x;
+      y += g.component[i] * along.y;
+      z += g.component[i] * along.z;
+    }
+    const float share = x * x + y * y + z * z;
+    if (share > g.least)
+      if (const std::uint32_t at = atomicAdd(g.listed, 1u); at < 1 / g.least)
+        g.list[at] = make_uint2(n, __float_as_uint(share));
+  }
+}
+
+__global__ void __launch_bounds__(block) set_inverse_masses(const InverseMass* masses, std::uint32_t count, float4* u,
+                                                            float4* other, float* mobility, float* of_groups)
+{
+  for (std::uint32_t i = blockIdx.x * block + threadIdx.x; i < count; i += gridDim.x * block)
+  {
+    const InverseMass mass = masses[i];
+    u[mass.node].w = other[mass.node].w = mass.own;
+    if (mobility != nullptr)
+      mobility[mass.node] = mass.own;
+    if (of_groups != nullptr)
+      of_groups[mass.node] = mass.of_group;
+  }
+}
+
 }  // namespace cuda
+
+cudaError_t launch_list_shares(const VectorSum& mode, cudaStream_t stream)
+{
+  cuda::list_shares<<<lanczos_blocks, cuda::block, 0, stream>>>(mode);
+  return cudaGetLastError();
+}
+
+cudaError_t launch_set_inverse_masses(const InverseMass* masses, std::uint32_t count, float4* u, float4* other,
+                                      float* mobility, float* of_groups, cudaStream_t stream)
+{
+  cuda::set_inverse_masses<<<(count + cuda::block - 1) / cuda::block, cuda::block, 0, stream>>>(masses, count, u, other,
+                                                                                                mobility, of_groups);
+  return cudaGetLastError();
+}
 
 cudaError_t launch_displace(const LanczosIteration& iteration, cudaStream_t stream)
 {

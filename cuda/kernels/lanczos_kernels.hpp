@@ -43,4 +43,33 @@ cudaError_t launch_displace(const LanczosIteration& iteration, cudaStream_t stre
 /// Replaces `before` by the image of `now`, found from the forces, without its parts along both vectors.
 cudaError_t launch_lanczos_product(const LanczosIteration& iteration, cudaStream_t stream);
 
+/// A mode that a search has found: the sum of its vectors times components. Vectors may have any length.
+struct VectorSum
+{
+  static constexpr int most_vectors = 32;
+  const float4* vector[most_vectors];
+  float component[most_vectors];  ///< for the vectors as they are
+  int vectors;
+  std::uint32_t nodes;
+  float least;            ///< share from which on a node is listed; the list has room for 1 / least nodes
+  uint2* list;            ///< receives device nodes and the bits of their shares, in any order
+  std::uint32_t* listed;  ///< receives their number; zero before
+};
+
+/// Lists the nodes with the largest shares in a mode (solver/stepping/added_mass.hpp).
+cudaError_t launch_list_shares(const VectorSum& mode, cudaStream_t stream);
+
+/// Inverse masses that nodes get [1/kg].
+struct InverseMass
+{
+  std::uint32_t node;  ///< device node
+  float own;           ///< of the node
+  float of_group;      ///< of the node and of those that follow it
+};
+
+/// Writes inverse masses to the last component of `u` and `other`, to `mobility`, and those of groups to `of_groups`;
+/// the last two may be null.
+cudaError_t launch_set_inverse_masses(const InverseMass* masses, std::uint32_t count, float4* u, float4* other,
+                                      float* mobility, float* of_groups, cudaStream_t stream);
+
 }  // namespace frontalis

@@ -100,7 +100,9 @@ void copy_mass_scaling(const Scene& scene, Model& model)
 {
   const MassScaling& from = scene.accuracy.mass_scaling;
   // both enumerations have the values none, uniform, selective
-  model.mass_scaling = { static_cast<MassScalingSettings::Kind>(from.kind), from.factor, {}, from.time_step };
+  model.mass_scaling = {
+    static_cast<MassScalingSettings::Kind>(from.kind), from.factor, {}, from.time_step, from.in_motion
+  };
   for (const std::string& name : from.materials)
     model.mass_scaling.materials.push_back(index_of(model.materials, name, scene.file + ": mass_scaling", "material"));
 }

@@ -169,6 +169,8 @@ void print_result(const Model& model, const RunSummary& summary)
   fmt::print("hourglass share    {:.3g} of the elastic energy at the end\n", hourglass_share(summary.monitor));
   fmt::print("worst J            {:.4f} at the end, {:.4f} in the run\n", summary.monitor.worst_jacobian,
              summary.worst_jacobian);
+  if (summary.monitor.added_mass > 0)
+    fmt::print("mass added         {:.2g} % of the model's, for longer steps\n", 100 * summary.monitor.added_mass);
   if (summary.ledger)
   {
     for (const auto& [name, joules] : energies_of(*summary.ledger))

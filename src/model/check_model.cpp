@@ -253,6 +253,7 @@ void check_settings(const Model& model)
     fail("mass_scaling", "kind {} is not known", static_cast<int>(model.mass_scaling.kind));
   check_positive("mass_scaling (factor)", 0, model.mass_scaling.factor);
   check_not_negative("mass_scaling", "time_step", model.mass_scaling.time_step);
+  check_not_negative("mass_scaling", "in_motion", model.mass_scaling.in_motion);
   check_each("mass_scaling (materials)", index_below(model.materials.size()), model.mass_scaling.materials);
   for (const std::string& name : model.switched_off)
     effect_from_name(name);

@@ -158,6 +158,7 @@ void exchange_model(Archive& archive, AnyModel& model)
   archive("mass_scaling/kind", model.mass_scaling.kind);
   archive("mass_scaling/factor", model.mass_scaling.factor);
   archive("mass_scaling/time_step", model.mass_scaling.time_step);
+  archive("mass_scaling/in_motion", model.mass_scaling.in_motion);
   archive("mass_scaling/materials", model.mass_scaling.materials);
 
   exchange_poses(archive, "expressions", model.expressions);

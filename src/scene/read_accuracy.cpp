@@ -34,11 +34,14 @@ void read_mass_scaling(const Node& node, MassScaling& scaling, const SceneNames&
   const Node uniform = mapping.optional("uniform");
   const Node selective = mapping.optional("selective");
   const Node time_step = mapping.optional("time_step");
+  const Node in_motion = mapping.optional("in_motion");
   if (node.is_mapping() && uniform.given() == (selective.given() || time_step.given()))
     node.fault(
-        "found {} of uniform, selective, time_step; must be 'none', or have either uniform alone, or selective, "
-        "time_step or both",
+        "found {} of uniform, selective, time_step; must be 'none', or have either uniform, or selective, time_step or "
+        "both",
         uniform.given() ? "uniform and another" : "none");
+  if (in_motion.given() && !uniform.given())
+    in_motion.fault("found in_motion without uniform; must be beside uniform");
   if (uniform.given())
   {
     scaling.kind = MassScaling::Kind::uniform;
@@ -48,6 +51,7 @@ void read_mass_scaling(const Node& node, MassScaling& scaling, const SceneNames&
     scaling.kind = MassScaling::Kind::selective;
   scaling.materials = selective.references(names.materials);
   scaling.time_step = time_step.number(Dimension::time, positive, 0);
+  scaling.in_motion = in_motion.number(Dimension::time, positive, 0);
 }
 
 AccuracyProfile read_profile(const std::string& name, const Node& node, const SceneNames& names)
@@ -74,6 +78,9 @@ AccuracyProfile read_profile(const std::string& name, const Node& node, const Sc
   choose("integration", { "one_point", "selective_reduced" }, profile.integration);
   choose("precision", { "single", "compensated", "double" }, profile.precision);
   choose("time_step", { "element", "assembled" }, profile.time_step);
+  if (profile.mass_scaling.in_motion > 0 && profile.time_step != "assembled")
+    node.fault("found mass_scaling with in_motion and 'time_step: {}'; must be with 'time_step: assembled'",
+               profile.time_step);
   choose("boundary", { "staircase", "true" }, profile.boundary);
   choose("fibres", { "sampled", "spread" }, profile.fibres);
   choose("gaps", { "glued", "parted" }, profile.gaps);

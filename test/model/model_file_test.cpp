@@ -113,6 +113,7 @@ TEST_F(ModelFile, GivesBackEveryField)
   EXPECT_EQ(b.activation_slew, 8);
   EXPECT_EQ(b.mass_scaling.kind, MassScalingSettings::Kind::selective);
   EXPECT_EQ(b.mass_scaling.time_step, 2e-5);
+  EXPECT_EQ(b.mass_scaling.in_motion, 3e-5);
   EXPECT_EQ(a.mass_scaling.materials, b.mass_scaling.materials);
   ASSERT_EQ(b.expressions.size(), 2u);
   EXPECT_EQ(a.expressions[0].activation, b.expressions[0].activation);

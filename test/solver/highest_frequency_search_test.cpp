@@ -41,6 +41,7 @@ struct Chain
     discretisation.held = { 0, nodes() - 1 };
   }
   std::int32_t nodes() const { return static_cast<std::int32_t>(model.nodes.size()); }
+  std::vector<FoundMode> modes;  // above half of what the latest search found
   double search()
   {
     products = -1;  // so that evaluating the forces at u does not count as a product
@@ -68,7 +69,9 @@ struct Chain
       }
     };
     HighestFrequencySearch<double> search(model, discretisation, { 0, count / 3, count }, count);
-    return search.run(0, count, u, { find, found, [] {} });
+    const double squared = search.run(0, count, u, { find, found, [] {} });
+    modes = search.modes_above(0.5 * squared);
+    return squared;
   }
   // Exact largest eigenvalue of a chain that is held at both ends.
   double exact() const
@@ -176,6 +179,23 @@ TEST(HighestFrequencySearch, moves_both_nodes_of_a_joint_as_one)
   EXPECT_NEAR(chain.search() / (stiffness / chain.mass), 1, 5e-3);
 }
 
+// The two masses at a stiff spring move against each other, and the others move less from node to node.
+TEST(HighestFrequencySearch, tells_which_nodes_move_in_the_mode)
+{
+  Chain chain;
+  chain.model.mass_scaling.in_motion = 1e-4;
+  chain.stiff = 10;
+  const double squared = chain.search();
+  ASSERT_FALSE(chain.modes.empty());
+  const FoundMode& mode = chain.modes.front();
+  EXPECT_NEAR(mode.frequency_squared, squared, 1e-5 * squared);
+  ASSERT_GE(mode.shares.size(), 2u);
+  double at_spring = 0;
+  for (const ModeShare& of : mode.shares)
+    at_spring += of.node == chain.nodes() / 2 || of.node == chain.nodes() / 2 - 1 ? double(of.share) : 0;
+  EXPECT_NEAR(at_spring, 1 - 1.0 / (19 * 19), 2e-3);
+}
+
 TEST(HighestFrequencySearch, finds_nothing_where_no_node_can_move)
 {
   Chain chain;
@@ -202,6 +222,21 @@ TEST(LanczosMatrix, has_the_largest_eigenvalue_of_its_rows)
   matrix.add_row(std::nan(""), 1);
   EXPECT_TRUE(std::isnan(matrix.largest_eigenvalue()));
   EXPECT_TRUE(matrix.settled());
+}
+
+TEST(LanczosMatrix, has_the_eigenvectors_of_its_rows)
+{
+  LanczosMatrix matrix;
+  matrix.add_row(2, 1);
+  matrix.add_row(2, 1);
+  const auto pairs = matrix.eigenpairs_above(0);
+  ASSERT_EQ(pairs.size(), 2u);
+  EXPECT_NEAR(pairs[0].value, 3, 1e-12);
+  EXPECT_NEAR(pairs[0].vector[0] * pairs[0].vector[1], 0.5, 1e-12);
+  EXPECT_NEAR(pairs[1].value, 1, 1e-12);
+  EXPECT_EQ(matrix.eigenpairs_above(2).size(), 1u);
+  matrix.add_row(std::nan(""), 1);
+  EXPECT_TRUE(matrix.eigenpairs_above(0).empty());
 }
 
 TEST(LanczosMatrix, settles_after_eight_rows_that_change_nothing)

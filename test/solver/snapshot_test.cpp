@@ -67,12 +67,28 @@ void steady(Model& m)
       load.kind = Load::Kind::traction;
 }
 
+// Steps are to be longer than the model allows at rest.
+void add_mass_in_motion(Model& m)
+{
+  m.time_step_estimate = TimeStepEstimate::assembled;
+  m.mass_scaling.kind = MassScalingSettings::Kind::uniform;
+  m.mass_scaling.in_motion = 6e-5;
+}
+
 // Models with all effects at once: with a moving floor and friction, with each precision, with the assembled time step.
 std::vector<Variant> variants()
 {
   return { { "plain", [](Model&) {} },
            { "ledger", [](Model&) {}, true },
            { "assembled", [](Model& m) { m.time_step_estimate = TimeStepEstimate::assembled; }, false, 4 },
+           { "mass in motion", add_mass_in_motion, true, 4 },
+           { "mass in motion, attached",
+             [](Model& m)
+             {
+               add_mass_in_motion(m);
+               attach_to_floor(m);
+             },
+             false, 4 },
            { "compensated", [](Model& m) { m.precision = Precision::compensated; } },
            { "double", [](Model& m) { m.precision = Precision::double_precision; } },
            { "reduced", [](Model& m) { m.integration = Integration::selective_reduced; } },
@@ -168,11 +184,14 @@ TEST_P(Snapshots, a_reset_leaves_nothing_behind)
   }
 }
 
-// The assembled estimate lengthens steps during the motions of the variants. Otherwise its variant would be useless.
-TEST_P(Snapshots, the_assembled_time_step_comes_within_a_play)
+// The assembled estimate lengthens steps, and mass is added, during the motions of the variants that are about them.
+TEST_P(Snapshots, the_assembled_time_step_and_mass_come_within_a_play)
 {
   const auto one = solver_of(variants()[0]), other = solver_of(variants()[2]);
   EXPECT_GT(play(*other, variants()[2], 0.7f, 0).time_step, 1.01 * play(*one, variants()[2], 0.7f, 0).time_step);
+  const auto heavy = solver_of(variants()[3]);
+  play(*heavy, variants()[3], 0.7f, 0);
+  EXPECT_GT(heavy->monitor().added_mass, 0);
 }
 
 TEST_P(Snapshots, go_on_in_another_solver_as_bytes)

@@ -21,6 +21,9 @@ struct Script
   double bound = 0;             // bound of the squared frequency [1/s2]
   double velocity = 0;          // velocity of all nodes along z [m/s]
   Work work;
+  double found = 0;  // what a search finds [1/s2]; 0: the bound
+  int searches = 0;
+  std::vector<std::int32_t> changed;  // nodes of the latest change of masses
 };
 
 struct ScriptState : BackendState
@@ -64,7 +67,13 @@ public:
   }
   void restore(const BackendState& from) override { script_.plans.resize(static_cast<const ScriptState&>(from).plans); }
   void internal_forces(NodalVectors& out) override { out.assign(model_->nodes.size(), {}); }
-  double highest_frequency_squared() override { return script_.bound; }
+  double highest_frequency_squared() override
+  {
+    ++script_.searches;
+    return script_.found > 0 ? script_.found : script_.bound;
+  }
+  std::vector<FoundMode> modes_above(double) override { return { { script_.found, { { 5, 0.01F } } } }; }
+  void masses_changed(const std::vector<std::int32_t>& nodes) override { script_.changed = nodes; }
   Monitor monitor() override
   {
     Monitor monitor;
@@ -296,4 +305,44 @@ TEST(TimeStepper, keeps_a_ledger_of_stored_energies_and_of_the_work_that_the_bac
   EXPECT_EQ(now["friction"], 1);
   EXPECT_EQ(now.largest, 11);
   EXPECT_NEAR(now.imbalance(), 2 + 3 + 1 - 11 - 7 - 6, 1e-12);
+}
+
+TEST(TimeStepper, adds_mass_where_a_search_finds_that_steps_would_be_short)
+{
+  Model model = model_of();
+  model.time_step_estimate = TimeStepEstimate::assembled;
+  model.mass_scaling.kind = MassScalingSettings::Kind::uniform;
+  model.mass_scaling.in_motion = 1e-4;
+  const Discretisation discretisation(model);
+  const double allowed = MassInMotion(model, discretisation).allowed();
+  const Controls relaxed{ { 0 }, { RigidTransform() } };
+  const auto after = [&](double found)
+  {
+    auto s = std::make_unique<Stepped>(model, SolverSettings{ "cpu", 0, 0, true });
+    s->solver.set_velocities(NodalVectors(model.nodes.size(), { { 0, 0, 0.5 } }));
+    s->script.found = found;
+    s->solver.advance(1e-4, relaxed);
+    return s;
+  };
+  const auto enough = after(0.9 * allowed), little = after(1.1 * allowed), much = after(3 * allowed);
+  EXPECT_EQ(enough->script.searches, 1);
+  EXPECT_TRUE(enough->script.changed.empty());
+  EXPECT_EQ(enough->solver.monitor().added_mass, 0);
+  EXPECT_EQ(little->script.searches, 1) << "the mass counts at the next search";
+  EXPECT_EQ(little->script.changed, std::vector<std::int32_t>{ 5 });
+  EXPECT_EQ(much->script.searches, 2);
+  const double added = much->solver.monitor().added_mass;
+  EXPECT_GT(added, 0);
+  double mass = 0;
+  for (const double of_node : discretisation.node_mass)
+    mass += of_node;
+  EXPECT_NEAR(much->solver.ledger().initial - enough->solver.ledger().initial, 0.5 * added * mass * 0.25, 1e-9 * mass);
+  std::unique_ptr<Snapshot> snapshot;
+  much->solver.save(snapshot);
+  much->script.changed.clear();
+  much->solver.reset();
+  EXPECT_EQ(much->script.changed, std::vector<std::int32_t>{ 5 });
+  EXPECT_EQ(much->solver.monitor().added_mass, 0);
+  much->solver.restore(*snapshot);
+  EXPECT_EQ(much->solver.monitor().added_mass, added);
 }

@@ -48,6 +48,7 @@ struct MassScalingSettings
   double factor = 1;
   std::vector<std::int32_t> materials;  ///< selective: voxels that contain one of these; empty: all
   double time_step = 0;                 ///< selective: critical time step to reach [s]; 0: that of the other voxels
+  double in_motion = 0;                 ///< uniform: time step that distorted voxels do not shorten [s]; 0: they do
 };
 
 /// How the hourglass modes, which one-point quadrature leaves without stiffness, are stiffened.

@@ -71,6 +71,7 @@ struct MassScaling
   double factor = 1;
   std::vector<std::string> materials;
   double time_step = 0;  ///< critical time step of these voxels [s]; 0: equal to that of all other voxels
+  double in_motion = 0;  ///< uniform: time step that distorted voxels do not shorten [s]; 0: they do
 };
 
 /// Result of the command `frontalis accuracy` for a profile; see doc/accuracy.md.

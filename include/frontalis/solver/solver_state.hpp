@@ -42,6 +42,7 @@ struct Monitor
   std::int32_t lost_node = -1;  ///< a node that is more than 4 mm past the rim; -1: none
   /// number of contact points deeper in a body than its field reaches, which nothing pushes out
   std::int64_t lost_points = 0;
+  double added_mass = 0;  ///< mass that MassScalingSettings::in_motion has added, as a proportion of the model's mass
   bool finite = true;
 };
 

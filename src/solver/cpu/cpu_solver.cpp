@@ -71,6 +71,15 @@ void CpuSolver<Real>::effects_switched()
 }
 
 template <class Real>
+void CpuSolver<Real>::masses_changed(const std::vector<std::int32_t>& nodes)
+{
+  Base::masses_changed(nodes);
+  for (const std::int32_t n : nodes)
+    inverse_mass_[n] = static_cast<float>(1 / discretisation_.node_mass[n]);
+  mobility_ = mobility(discretisation_);
+}
+
+template <class Real>
 void CpuSolver<Real>::list_arrays(ArrayList& list)
 {
   Base::list_arrays(list);

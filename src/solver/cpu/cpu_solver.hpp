@@ -26,6 +26,7 @@ public:
   void list_arrays(ArrayList& list) override;
   double run(const StepPlan& plan) override;
   void effects_switched() override;
+  void masses_changed(const std::vector<std::int32_t>& nodes) override;
   Monitor monitor() override;
   Work work(bool open) override;
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "solver/stepping/nodal_loads.hpp"
+#include "solver/stepping/added_mass.hpp"
 #include "solver/stepping/step_backend.hpp"
 
 namespace frontalis
@@ -26,6 +27,9 @@ public:
 
   const EnergyLedger& latest() const { return ledger_; }
   void restore(const EnergyLedger& ledger) { ledger_ = ledger; }
+  /// Called when nodes have got mass, with their velocities as they were. The kinetic energy that comes with the mass
+  /// counts as stored when the ledger was opened.
+  void masses_raised(const std::vector<AddedMass>& raised);
 
 private:
   NodalVectors external_forces(double time, const NodalVectors& u);

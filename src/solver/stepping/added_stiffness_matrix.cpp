@@ -19,15 +19,16 @@ SparseMatrix matrix_of(std::size_t rows, std::size_t columns, const std::vector<
   return matrix;
 }
 
-// Displacements of nodes from the vector of the search.
-SparseMatrix nodes_from_search(const Discretisation& discretisation, const std::vector<double>& root)
+// Displacements of all nodes from those of the nodes that move by themselves.
+SparseMatrix nodes_from_moving(const Discretisation& discretisation, const std::vector<double>& root)
 {
   std::vector<Triplet> entries;
   for (std::int32_t n = 0; n < static_cast<std::int32_t>(root.size()); ++n)
     if (root[n] > 0)
-      entries.emplace_back(n, n, root[n]);
+      entries.emplace_back(n, n, 1);
   for (const auto& node : discretisation.followers)
-    entries.emplace_back(node.node, node.master, node.ratio * root[node.master]);
+    if (root[node.master] > 0)
+      entries.emplace_back(node.node, node.master, node.ratio);
   return matrix_of(root.size(), root.size(), entries);
 }
 
@@ -53,7 +54,7 @@ AddedStiffnessMatrix::AddedStiffnessMatrix(const Model& model, const Discretisat
 {
   if (discretisation.added.empty())
     return;
-  const SparseMatrix nodes = nodes_from_search(discretisation, root);
+  const SparseMatrix nodes = nodes_from_moving(discretisation, root);
   SparseMatrix sum(nodes.rows(), nodes.cols());
   for (const auto& added : discretisation.added)
     for (const PointStiffness& of_points : added->matrices())

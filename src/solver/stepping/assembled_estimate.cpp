@@ -9,8 +9,7 @@ namespace
 {
 
 // Margins are needed, because the search finds too low an eigenvalue, and the model may stiffen until the next search.
-constexpr double frequency_margin = 1.1;   // factor on the squared frequency
-constexpr double margin_in_motion = 1.25;  // replaces `frequency_margin` until the model has been found steady
+constexpr double frequency_margin = 1.1;  // factor on the squared frequency
 // Largest relative changes of what is found, and of what is covered, between successive searches of a steady model.
 constexpr double steady_change = 0.03;
 // Numbers of steps between searches. A search takes as long as 10 to 40 steps. After a change of activations or while

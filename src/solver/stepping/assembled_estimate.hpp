@@ -17,6 +17,8 @@ namespace frontalis
 class AssembledEstimate
 {
 public:
+  /// Factor on the squared frequency that a search finds, until the model has been found steady.
+  static constexpr double margin_in_motion = 1.25;
   /// Squared highest frequency at given activations.
   using Search = std::function<double(const std::vector<float>& activation)>;
 

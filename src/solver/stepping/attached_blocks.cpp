@@ -77,6 +77,7 @@ void AttachedBlocks<Real>::finish()
     rows_before_.push_back(masters_.size() + held_.size() + levels_.size());
   }
   groups_ = {};
+  masses_changed();
   reset();
 }
 
@@ -102,33 +103,48 @@ void AttachedBlocks<Real>::add_block(const Group* begin, const Group* end)
     const Group& group = copy ? *begin : begin[lane];
     const auto node_of = [](const std::vector<AttachedNode>& nodes, std::size_t row) -> const AttachedNode&
     { return nodes[row < nodes.size() ? row : 0]; };
-    double held_mass = 0;
     for (std::size_t r = 0; r < held_rows; ++r)
     {
       HeldRow<Real>& row = held_[block.held_begin + r];
       const AttachedNode& node = node_of(group.held, r);
-      const double mass = r < group.held.size() ? mass_[node.node] : 0;
       row.node[lane] = node.node;
       row.ratio[lane] = static_cast<Real>(node.ratio);
-      row.weight[lane] = static_cast<Real>(mass * node.ratio);
-      held_mass += mass * node.ratio * node.ratio;
+      row.weight[lane] = r < group.held.size() ? 1 : 0;  // masses_changed() replaces the 1
     }
     for (std::size_t r = 0; r < level_rows; ++r)
     {
       LevelRow<Real>& row = levels_[block.level_begin + r];
       const AttachedNode& node = node_of(group.levels, r);
-      const double mass = r < group.levels.size() ? mass_[node.node] : 0;
       row.node[lane] = node.node;
       row.ratio[lane] = static_cast<Real>(node.ratio);
-      row.weight[lane] = static_cast<Real>(mass * node.ratio);
+      row.weight[lane] = r < group.levels.size() ? 1 : 0;
       row.offset[lane] = static_cast<Real>(level_offset(model_, node));
       row.planes.surface[lane] = node.surface;
     }
     block.node[lane] = group.master;
-    block.held_mass[lane] = static_cast<Real>(held_mass);
-    block.mass[lane] = static_cast<Real>(mass_[group.master] + held_mass);
     block.planes.surface[lane] = group.surface;
   }
+}
+
+template <class Real>
+void AttachedBlocks<Real>::masses_changed()
+{
+  for (auto& block : masters_)
+    for (int lane = 0; lane < attach_width; ++lane)
+    {
+      double held_mass = 0;
+      for (auto r = block.held_begin; r < block.held_end; ++r)
+        if (HeldRow<Real>& row = held_[r]; row.weight[lane] != 0)
+        {
+          row.weight[lane] = static_cast<Real>(mass_[row.node[lane]] * row.ratio[lane]);
+          held_mass += double(row.weight[lane]) * double(row.ratio[lane]);
+        }
+      for (auto r = block.level_begin; r < block.level_end; ++r)
+        if (LevelRow<Real>& row = levels_[r]; row.weight[lane] != 0)
+          row.weight[lane] = static_cast<Real>(mass_[row.node[lane]] * row.ratio[lane]);
+      block.held_mass[lane] = static_cast<Real>(held_mass);
+      block.mass[lane] = static_cast<Real>(mass_[block.node[lane]] + held_mass);
+    }
 }
 
 template <class Real>

@@ -32,6 +32,8 @@ public:
   void finish();
 
   bool empty() const { return masters_.empty(); }
+  /// Called after the masses have changed.
+  void masses_changed();
   void reset();
   void list_arrays(ArrayList& list);
   /// Applies the constraints of the thread's part of the groups.

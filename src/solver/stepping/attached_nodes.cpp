@@ -130,6 +130,14 @@ void AttachedNodes<Real>::add_group(const AttachedNode* begin, const AttachedNod
 }
 
 template <class Real>
+void AttachedNodes<Real>::masses_changed()
+{
+  for (Tie& tie : ties_)
+    tie.mass = mass_[tie.node];
+  blocks_.masses_changed();
+}
+
+template <class Real>
 void AttachedNodes<Real>::reset()
 {
   blocks_.reset();

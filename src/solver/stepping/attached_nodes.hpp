@@ -40,6 +40,7 @@ public:
   void constrain_groups(const NodeShare& share, Real* const u[3], Real* const v[3],
                         const ConstraintStep& step) override;
 
+  void masses_changed() override;
   void run(EffectSet) override {}
   void reset() override;
   void list_arrays(ArrayList& list) override;

@@ -1,5 +1,7 @@
 #include "solver/stepping/highest_frequency_search.hpp"
 
+#include <Eigen/Eigenvalues>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -76,6 +78,23 @@ double LanczosMatrix::largest_eigenvalue() const
   return largest_.empty() ? std::numeric_limits<double>::quiet_NaN() : largest_.back();
 }
 
+std::vector<LanczosMatrix::Eigenpair> LanczosMatrix::eigenpairs_above(double number) const
+{
+  std::vector<Eigenpair> pairs;
+  if (!std::isfinite(largest_eigenvalue()))
+    return pairs;
+  const auto size = static_cast<Eigen::Index>(rows());
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
+  solver.computeFromTridiagonal(Eigen::Map<const Eigen::VectorXd>(diagonal_.data(), size),
+                                Eigen::Map<const Eigen::VectorXd>(beside_.data(), size - 1));
+  for (Eigen::Index i = size; i-- > 0 && solver.eigenvalues()[i] > number;)
+  {
+    const Eigen::VectorXd vector = solver.eigenvectors().col(i);
+    pairs.push_back({ solver.eigenvalues()[i], { vector.data(), vector.data() + size } });
+  }
+  return pairs;
+}
+
 bool LanczosMatrix::settled() const
 {
   if (largest_.empty())
@@ -125,10 +144,11 @@ HighestFrequencySearch<Real>::HighestFrequencySearch(const Model& model, const D
       followers_(discretisation.followers),
       added_(model, discretisation, roots_for_search(discretisation)),
       size_(first_node_.size() - 1),
-      along_(size_.size())
+      along_(size_.size()),
+      keeps_vectors_(model.mass_scaling.in_motion > 0)
 {
-  for (const double x : roots_for_search(discretisation))
-    root_.push_back(static_cast<Real>(x));
+  root_.resize(model.nodes.size());
+  masses_changed(discretisation);
   std::stable_sort(followers_.begin(), followers_.end(),
                    [](const auto& a, const auto& b) { return a.master < b.master; });
   for (auto* vector : { &start_, &now_, &before_, &moved_, &present_ })
@@ -151,7 +171,41 @@ void HighestFrequencySearch<Real>::list_arrays(ArrayList& list) const
   list.add(what, followers_);
   list.add(what, size_);
   list.add(what, along_);
+  for (const auto& vector : vectors_)
+    for (const auto& component : vector)
+      list.add(what, component);
   added_.list_arrays(what, list);
+}
+
+template <class Real>
+void HighestFrequencySearch<Real>::masses_changed(const Discretisation& discretisation)
+{
+  const std::vector<double> root = roots_for_search(discretisation);
+  std::copy(root.begin(), root.end(), root_.begin());
+}
+
+template <class Real>
+std::vector<FoundMode> HighestFrequencySearch<Real>::modes_above(double frequency_squared) const
+{
+  std::vector<FoundMode> modes;
+  for (const LanczosMatrix::Eigenpair& pair : matrix_.eigenpairs_above(frequency_squared))
+  {
+    FoundMode& mode = modes.emplace_back(FoundMode{ pair.value, {} });
+    for (std::size_t n = 0; n < root_.size(); ++n)
+    {
+      Real share = 0;
+      for (std::size_t axis = 0; axis < 3; ++axis)
+      {
+        Real component = 0;
+        for (std::size_t i = 0; i < pair.vector.size(); ++i)
+          component += static_cast<Real>(pair.vector[i]) * vectors_[i][axis][n];
+        share += component * component;
+      }
+      if (share > Real(least_mode_share))
+        mode.shares.push_back({ static_cast<std::int32_t>(n), static_cast<float>(share) });
+    }
+  }
+  return modes;
 }
 
 template <class Real>
@@ -251,6 +305,8 @@ double HighestFrequencySearch<Real>::run(std::int32_t first, std::int32_t end, c
     }
   for (auto part = first_part; part < end_part; ++part)
     subtract(nodes(part), 0, *now, *now, size_[part]);
+  if (first_part == 0)
+    make_room(0);
   forces.barrier();
   Size of_now = total_size();
   LanczosMatrix matrix;
@@ -259,6 +315,10 @@ double HighestFrequencySearch<Real>::run(std::int32_t first, std::int32_t end, c
   {
     const double length = std::sqrt(of_now.squared_length), scale = mode_amplitude(model_, iteration) / of_now.largest;
     const auto factor = static_cast<Real>(1 / (scale * length));
+    if (keeps_vectors_)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        for (auto n = own.first; n < own.end; ++n)
+          vectors_[iteration][axis][n] = static_cast<Real>(1 / length) * (*now)[axis][n];
     displace(own, u, static_cast<Real>(scale), *now);
     forces.barrier();
     forces.find(moved_);
@@ -269,20 +329,31 @@ double HighestFrequencySearch<Real>::run(std::int32_t first, std::int32_t end, c
       const Nodes at = nodes(part);
       find_image(at, forces.found, factor, static_cast<Real>(iteration == 0 ? 0 : length / length_before), *before);
       add_followers(at, forces.found, factor, *before);
-      added_.add_product(at.first, at.end, static_cast<Real>(1 / length), *now, *before);
+      added_.add_product(at.first, at.end, root_, static_cast<Real>(1 / length), *now, *before);
       along_[part] = product(at, *before, *now);
     }
     forces.barrier();
     const double along = std::accumulate(along_.begin(), along_.end(), 0.0);
     for (auto part = first_part; part < end_part; ++part)
       subtract(nodes(part), static_cast<Real>(along / of_now.squared_length), *now, *before, size_[part]);
+    if (first_part == 0)
+      make_room(iteration + 1);
     forces.barrier();
     of_now = total_size();
     matrix.add_row(along / length, std::sqrt(of_now.squared_length));
     length_before = length;
     std::swap(now, before);
   }
+  if (first_part == 0 && keeps_vectors_)
+    matrix_ = matrix;
   return matrix.largest_eigenvalue();
+}
+
+template <class Real>
+void HighestFrequencySearch<Real>::make_room(std::size_t iteration)
+{
+  if (keeps_vectors_ && vectors_.size() <= iteration)
+    vectors_.push_back(start_);
 }
 
 template class HighestFrequencySearch<float>;

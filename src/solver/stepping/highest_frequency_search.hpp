@@ -1,5 +1,6 @@
 #pragma once
 
+#include "solver/stepping/added_mass.hpp"
 #include "solver/stepping/added_stiffness_matrix.hpp"
 
 #include <array>
@@ -21,6 +22,13 @@ public:
   std::size_t rows() const { return diagonal_.size(); }
   /// NaN without rows, or if an element is not finite.
   double largest_eigenvalue() const;
+  struct Eigenpair
+  {
+    double value;
+    std::vector<double> vector;  ///< one component per row; of length 1
+  };
+  /// The eigenvalues above a number, with their eigenvectors. None if an element is not finite.
+  std::vector<Eigenpair> eigenpairs_above(double number) const;
   /// Whether further rows would change the largest eigenvalue by little, or by nothing that makes sense.
   bool settled() const;
 
@@ -70,6 +78,10 @@ public:
   /// Squared highest frequency [1/s2] at displacements u. NaN if no node can move or a force is not finite. Each thread
   /// calls this function with its nodes [first, end), and all receive the same number.
   double run(std::int32_t first, std::int32_t end, const Components& u, const Forces& forces);
+  /// Value of StepBackend::modes_above(), of the latest run().
+  std::vector<FoundMode> modes_above(double frequency_squared) const;
+  /// Called after Discretisation::node_mass has changed.
+  void masses_changed(const Discretisation& discretisation);
   void list_arrays(ArrayList& list) const;
 
 private:
@@ -84,6 +96,7 @@ private:
   Nodes nodes(std::size_t part) const { return { first_node_[part], first_node_[part + 1] }; }
   std::size_t part_of(std::int32_t node) const;
   Size total_size() const;
+  void make_room(std::size_t iteration);
   void displace(const Nodes& nodes, const Components& u, Real scale, const Components& now);
   void find_image(const Nodes& nodes, const Components& forces, Real factor, Real back, Components& before) const;
   void add_followers(const Nodes& nodes, const Components& forces, Real factor, Components& image) const;
@@ -98,6 +111,10 @@ private:
   Components start_, now_, before_, moved_, present_;
   std::vector<Size> size_;     // of each part of a vector
   std::vector<double> along_;  // products of the parts of a vector with those of its image
+  // for modes_above(), in models with MassScalingSettings::in_motion
+  bool keeps_vectors_;
+  std::vector<Components> vectors_;  // of the iterations, of length 1
+  LanczosMatrix matrix_;
 };
 
 }  // namespace frontalis

@@ -188,6 +188,15 @@ double HostBackend<Real, Relaxed>::highest_frequency_squared()
 }
 
 template <class Real, class Relaxed>
+void HostBackend<Real, Relaxed>::masses_changed(const std::vector<std::int32_t>& /*nodes*/)
+{
+  if (search_)
+    search_->masses_changed(discretisation_);
+  for (NodePart<Real>* const part : active_parts())
+    part->masses_changed();
+}
+
+template <class Real, class Relaxed>
 void HostBackend<Real, Relaxed>::skin(SkinState& out)
 {
   skin_state(*model_, pointers(u_).data(), out);

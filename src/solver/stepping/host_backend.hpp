@@ -48,6 +48,11 @@ public:
   std::int64_t lost_points() const override;
   void internal_forces(NodalVectors& out) override;
   double highest_frequency_squared() override;
+  std::vector<FoundMode> modes_above(double frequency_squared) override
+  {
+    return search_->modes_above(frequency_squared);
+  }
+  void masses_changed(const std::vector<std::int32_t>& nodes) override;
   void skin(SkinState& out) override;
 
 protected:

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 namespace frontalis
 {
 
@@ -49,11 +51,12 @@ void TimeStepper::restore(const Snapshot& snapshot)
   const auto* const saved = dynamic_cast<const MotionSnapshot*>(&snapshot);
   if (saved == nullptr || saved->owner != this)
     throw Error("a snapshot of another solver: allowed are those that this one saved");
-  motion_ = saved->motion;
+  const std::vector<AddedMass> before = std::exchange(motion_, saved->motion).added;
   controller_.restore(saved->time_step);
   if (ledger_)
     ledger_->restore(saved->ledger);
   backend_->restore(*saved->backend);
+  replace_masses(before);
   renew_conditions();
   // The running effects are not restored, so that the restored state must be adapted to them.
   std::vector<Effect> switched;

@@ -64,6 +64,8 @@ public:
   virtual bool prepares() const { return false; }
   /// Whether add_forces() adds forces. If so, threads wait for each other between before_step() and add_forces().
   virtual bool pushes() const { return false; }
+  /// Called after Discretisation::node_mass has changed.
+  virtual void masses_changed() {}
   /// The next two functions are called with the displacements at the start of the step.
   virtual void prepare_step(const NodeShare& /*share*/, const Real* const /*u*/[3]) {}
   virtual void before_step(const NodeShare& /*share*/, const Real* const /*u*/[3], const ConstraintStep& /*step*/) {}

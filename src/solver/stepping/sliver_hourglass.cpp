@@ -2,8 +2,9 @@
 
 #include "frontalis/physics/hourglass.hpp"
 #include "frontalis/physics/time_step.hpp"
-#include "solver/material_laws.hpp"
+#include "solver/stepping/discretisation.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <set>
 

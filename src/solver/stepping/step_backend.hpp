@@ -2,6 +2,7 @@
 
 #include "frontalis/byte_archive.hpp"
 #include "solver/energy/energy_account.hpp"
+#include "solver/stepping/added_mass.hpp"
 #include "solver/stepping/array_list.hpp"
 #include "solver/stepping/discretisation.hpp"
 #include "solver/stepping/step_plan.hpp"
@@ -78,6 +79,11 @@ public:
   /// Squared highest frequency [1/s2] of the assembled model at the present displacements and activations; see
   /// highest_frequency_search.hpp.
   virtual double highest_frequency_squared() = 0;
+  /// The modes above a squared frequency [1/s2] that the latest search met. Called only if
+  /// MassScalingSettings::in_motion is set.
+  virtual std::vector<FoundMode> modes_above(double frequency_squared) = 0;
+  /// Called after masses of these nodes have changed in the discretisation.
+  virtual void masses_changed(const std::vector<std::int32_t>& nodes) = 0;
   virtual Monitor monitor() = 0;
   /// Work since the energy account was opened; with `open`, the account is opened now. Called only if
   /// SolverSettings::ledger is set.

@@ -58,6 +58,7 @@ TimeStepper::TimeStepper(std::shared_ptr<const Model> model, const SolverSetting
       effects_(*model_),
       controller_(discretisation_.frequency_squared_max, model_->time_step_estimate, model_->time_step_share,
                   settings.time_step),
+      mass_in_motion_(*model_, discretisation_),
       motion_(at_rest()),
       damping_(model_->damping)
 {
@@ -75,7 +76,7 @@ TimeStepper::Motion TimeStepper::at_rest() const
   const std::vector<float> relaxed(model_->muscles.size(), 0);
   const std::vector<RigidTransform> in_place(model_->bones.size());
   const double critical_step = 2 / std::sqrt(discretisation_.frequency_squared_max);
-  return { BoneMotionLimits(*model_, critical_step), { relaxed, in_place }, relaxed };
+  return { BoneMotionLimits(*model_, critical_step), { relaxed, in_place }, relaxed, {} };
 }
 
 void TimeStepper::renew_conditions()
@@ -88,8 +89,9 @@ void TimeStepper::renew_conditions()
 
 void TimeStepper::reset()
 {
+  const std::vector<AddedMass> before = std::exchange(motion_, at_rest()).added;
+  replace_masses(before);
   backend_->set(NodalField::displacements, {});
-  motion_ = at_rest();
   controller_.reset();
   profile_ = {};
   renew_conditions();
@@ -186,11 +188,7 @@ double TimeStepper::longest_plan(const Controls& target, double seconds) const
 
 void TimeStepper::renew_assembled_estimate(const Controls& asked)
 {
-  const auto search = [this](const std::vector<float>& activation)
-  {
-    conditions_.activation = effects_.felt(activation);
-    return backend_->highest_frequency_squared();
-  };
+  const auto search = [this](const std::vector<float>& activation) { return search_frequency(activation); };
   std::vector<float> most = motion_.activation;
   for (std::size_t m = 0; m < most.size(); ++m)
     most[m] = std::max({ most[m], motion_.controls.activation[m], asked.activation[m] });
@@ -356,6 +354,7 @@ Monitor TimeStepper::monitor()
   result.critical_time_step = controller_.critical_step_at(4 / (result.critical_time_step * result.critical_time_step));
   result.step_share = motion_.latest_step / result.critical_time_step;
   result.lost_points = backend_->lost_points();
+  result.added_mass = mass_in_motion_.proportion(motion_.added);
   if (!model_->sliding.empty() && result.finite && effects_.running().has(Effect::sliding))
   {
     NodalVectors u;

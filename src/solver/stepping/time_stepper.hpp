@@ -2,6 +2,7 @@
 
 #include "solver/energy/energy_ledger_keeper.hpp"
 #include "solver/skin/skin_values.hpp"
+#include "solver/stepping/added_mass.hpp"
 #include "solver/stepping/bone_motion_limits.hpp"
 #include "solver/stepping/effect_switches.hpp"
 #include "solver/stepping/time_step_controller.hpp"
@@ -59,6 +60,7 @@ private:
     BoneMotionLimits bones;
     Controls controls;
     std::vector<float> activation;
+    std::vector<AddedMass> added;
     double time = 0;         // [s]
     double latest_step = 0;  // [s]; 0: no step has been made
     bool diverged = false;
@@ -66,7 +68,7 @@ private:
     void archive(ByteArchive& archive)
     {
       bones.archive(archive);
-      archive(controls.activation)(controls.bone)(activation)(time)(latest_step)(diverged);
+      archive(controls.activation)(controls.bone)(activation)(added)(time)(latest_step)(diverged);
     }
   };
   struct MotionSnapshot;
@@ -76,6 +78,10 @@ private:
   /// Longest duration of a plan [s] in a motion that reaches `target` after `seconds`; infinite without a limit.
   double longest_plan(const Controls& target, double seconds) const;
   void renew_assembled_estimate(const Controls& asked);
+  /// Squared highest frequency [1/s2] at these activations, after mass has been added where that is wanted.
+  double search_frequency(const std::vector<float>& activation);
+  /// Gives nodes the masses that motion_ says, instead of those that were added before.
+  void replace_masses(const std::vector<AddedMass>& before);
   StepPlan plan_to(const Controls& next, const TimeStepController::Choice& choice);
   void effects_switched(const std::vector<Effect>& effects);
   /// Resets the choice of the time step and opens the ledger again.
@@ -93,6 +99,7 @@ private:
   BackendTraits traits_;
   std::unique_ptr<EnergyLedgerKeeper> ledger_;  // null without a ledger
   std::unique_ptr<SkinValues> skin_values_;     // made on the first request
+  MassInMotion mass_in_motion_;
   Motion motion_;
   Profile profile_;
   double damping_;         // outside of settle() [1/s]

@@ -185,7 +185,8 @@ std::string profile_text(const AccuracyRow& row, const std::string& name, const 
   add(p.bulk_modulus_max > 0, "bulk_modulus_max: " + readable(1e-3 * p.bulk_modulus_max, 4) + " kPa");
   const MassScaling& mass = p.mass_scaling;
   if (mass.kind == MassScaling::Kind::uniform)
-    text += ", mass_scaling: {uniform: " + readable(mass.factor) + "}";
+    text += ", mass_scaling: {uniform: " + readable(mass.factor) +
+            (mass.in_motion > 0 ? ", in_motion: " + readable(1e6 * mass.in_motion) + " us}" : "}");
   else if (mass.kind == MassScaling::Kind::selective)
   {
     std::vector<std::string> entries;

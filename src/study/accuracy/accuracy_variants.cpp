@@ -32,7 +32,8 @@ void scale_mass(AccuracySetting& setting, double factor, double critical)
 
 bool same(const MassScaling& a, const MassScaling& b)
 {
-  return a.kind == b.kind && a.factor == b.factor && a.materials == b.materials && a.time_step == b.time_step;
+  return a.kind == b.kind && a.factor == b.factor && a.materials == b.materials && a.time_step == b.time_step &&
+         a.in_motion == b.in_motion;
 }
 
 std::string text_of(const MassScaling& scaling)
@@ -40,7 +41,8 @@ std::string text_of(const MassScaling& scaling)
   if (scaling.kind == MassScaling::Kind::none)
     return "no mass scaling";
   if (scaling.kind == MassScaling::Kind::uniform)
-    return "mass ×" + readable(scaling.factor, 3);
+    return "mass ×" + readable(scaling.factor, 3) +
+           (scaling.in_motion > 0 ? ", in motion for " + readable(1e6 * scaling.in_motion, 3) + " µs" : "");
   std::string text = "mass for";
   if (scaling.time_step > 0)
     text += " " + readable(1e6 * scaling.time_step, 3) + " µs";

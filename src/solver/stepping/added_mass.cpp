@@ -1,0 +1,93 @@
+#include "solver/stepping/added_mass.hpp"
+
+#include "solver/stepping/assembled_estimate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <utility>
+
+namespace frontalis
+{
+namespace
+{
+
+constexpr double most_at_node = 10;     // largest ratio of a node's mass to that at rest
+constexpr double most_of_model = 0.01;  // largest proportion of the model's mass
+constexpr double missing_again = 1.1;   // ratio of the squared frequency to the allowed one
+constexpr double margin = 1.25;         // on the squared frequency, so that growing distortion seldom needs more
+
+}  // namespace
+
+MassInMotion::MassInMotion(const Model& model, const Discretisation& discretisation)
+    : allowed_(std::numeric_limits<double>::infinity()),
+      total_mass_(std::accumulate(discretisation.node_mass.begin(), discretisation.node_mass.end(), 0.0))
+{
+  if (model.mass_scaling.in_motion > 0)
+  {
+    const double critical = model.mass_scaling.in_motion / model.time_step_share;
+    allowed_ = 4 / (critical * critical) / AssembledEstimate::margin_in_motion;
+  }
+}
+
+double MassInMotion::proportion(const std::vector<AddedMass>& added) const
+{
+  double sum = 0;
+  for (const AddedMass& mass : added)
+    sum += mass.now - mass.before;
+  return sum / total_mass_;
+}
+
+bool MassInMotion::limits(double frequency_squared, const std::vector<AddedMass>& added) const
+{
+  return frequency_squared > allowed_ && std::isfinite(frequency_squared) && proportion(added) < 0.99 * most_of_model;
+}
+
+// A mode's squared frequency is divided by 1 + the sum of share times relative growth of mass. With growth in
+// proportion to the share, the least mass is added to nodes of equal mass.
+std::vector<AddedMass> MassInMotion::raise(const std::vector<FoundMode>& modes, std::vector<double>& node_mass,
+                                           std::vector<AddedMass>& added) const
+{
+  std::map<std::int32_t, double> growth;
+  for (const FoundMode& mode : modes)
+  {
+    double squares = 0;
+    for (const ModeShare& of : mode.shares)
+      squares += double(of.share) * double(of.share);
+    for (const ModeShare& of : mode.shares)
+      growth[of.node] += (margin * mode.frequency_squared / allowed_ - 1) * double(of.share) / squares;
+  }
+  double wanted = 0;
+  for (const auto& [node, by] : growth)
+    wanted += by * node_mass[node] / total_mass_;
+  const double granted = std::min(1.0, (most_of_model - proportion(added)) / wanted);
+  std::vector<AddedMass> raised, all;
+  auto known = added.begin();
+  for (const auto& [node, by] : growth)
+  {
+    while (known != added.end() && known->node < node)
+      all.push_back(*known++);
+    const bool first = known == added.end() || known->node > node;
+    AddedMass mass = first ? AddedMass{ node, node_mass[node], node_mass[node] } : *known++;
+    const double before = mass.now;
+    mass.now = std::min(before * (1 + granted * by), most_at_node * mass.before);
+    node_mass[node] = mass.now;
+    all.push_back(mass);
+    raised.push_back({ node, before, mass.now });
+  }
+  all.insert(all.end(), known, added.end());
+  added = std::move(all);
+  return raised;
+}
+
+std::vector<std::int32_t> nodes_of(const std::vector<AddedMass>& added)
+{
+  std::vector<std::int32_t> nodes;
+  for (const AddedMass& mass : added)
+    nodes.push_back(static_cast<std::int32_t>(mass.node));
+  return nodes;
+}
+
+}  // namespace frontalis
