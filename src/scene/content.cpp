@@ -190,8 +190,9 @@ void add_numerics(const Scene& scene, Content& content)
   const AccuracyProfile& profile = scene.accuracy;
   const MassScaling& scaling = profile.mass_scaling;
   content.line("accuracy", profile.voxel, profile.samples, profile.fill_min, profile.time_step_share, scaling.kind,
-               scaling.factor, scaling.time_step, scaling.in_motion, profile.bulk_modulus_max, profile.assumed_strain, profile.integration,
-               profile.precision, profile.time_step, profile.boundary, profile.fibres, profile.gaps, scaling.materials);
+               scaling.factor, scaling.time_step, scaling.in_motion, profile.bulk_modulus_max, profile.assumed_strain,
+               profile.integration, profile.precision, profile.time_step, profile.boundary, profile.fibres,
+               profile.gaps, scaling.materials);
   content.line("profile", profile.name);
   for (const AccuracyProfile& known : scene.profiles)
     content.line("measured", known.name, known.measured.error, known.measured.cost, known.measured.machine);
