@@ -170,5 +170,30 @@ TEST(AddedMass, never_exceeds_ten_times_the_mass_of_a_node_and_a_hundredth_of_th
   EXPECT_FALSE(mass.limits(10 * mass.allowed(), added)) << "no more may be added";
 }
 
+TEST(AddedMass, fades_once_much_was_added)
+{
+  const Model model = with_mass_in_motion(large_block(), 1e-4);
+  const Discretisation discretisation(model);
+  const MassInMotion mass(model, discretisation);
+  std::vector<double> node_mass = discretisation.node_mass;
+  std::vector<AddedMass> added;
+  FoundMode mode{ 1.1 * mass.allowed(), { { 3, 0.5F }, { 4, 0.5F } } };
+  mass.raise({ mode }, node_mass, added);
+  EXPECT_TRUE(mass.fade(node_mass, added).empty()) << "little was added";
+  mode.shares.clear();
+  for (std::int32_t n = 5; n < 4000; ++n)
+    mode.shares.push_back({ n, 1.0F / 4000 });
+  mass.raise({ mode }, node_mass, added);
+  const double much = mass.proportion(added);
+  EXPECT_GT(much, 0.005);
+  const auto faded = mass.fade(node_mass, added);
+  EXPECT_NEAR(faded[0].now - discretisation.node_mass[3], 0.9 * (faded[0].before - discretisation.node_mass[3]), 1e-12);
+  EXPECT_EQ(node_mass[3], faded[0].now);
+  EXPECT_EQ(added[0].now, faded[0].now);
+  EXPECT_LT(mass.proportion(added), 0.91 * much);
+  for (std::size_t n = 5; n < 4000; ++n)
+    EXPECT_GE(node_mass[n], discretisation.node_mass[n]);
+}
+
 }  // namespace
 }  // namespace frontalis

@@ -78,11 +78,11 @@ void EnergyLedgerKeeper::open(double time, double dt)
   ledger_.initial = ledger_.initial - now["gravity"] - now["load"] - now["constraint"];
 }
 
-void EnergyLedgerKeeper::masses_raised(const std::vector<AddedMass>& raised)
+void EnergyLedgerKeeper::masses_changed(const std::vector<AddedMass>& changed)
 {
   NodalVectors v;
   backend_.get(NodalField::velocities, v);
-  for (const AddedMass& mass : raised)
+  for (const AddedMass& mass : changed)
     for (const double speed : v[mass.node])
       ledger_.initial += 0.5 * (mass.now - mass.before) * speed * speed;
 }

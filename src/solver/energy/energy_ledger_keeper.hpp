@@ -27,9 +27,9 @@ public:
 
   const EnergyLedger& latest() const { return ledger_; }
   void restore(const EnergyLedger& ledger) { ledger_ = ledger; }
-  /// Called when nodes have got mass, with their velocities as they were. The kinetic energy that comes with the mass
-  /// counts as stored when the ledger was opened.
-  void masses_raised(const std::vector<AddedMass>& raised);
+  /// Called when masses have changed, with velocities as they were. The kinetic energy that comes or goes with the mass
+  /// counts as if it had done so when the ledger was opened.
+  void masses_changed(const std::vector<AddedMass>& changed);
 
 private:
   NodalVectors external_forces(double time, const NodalVectors& u);

@@ -16,8 +16,9 @@ namespace
 
 constexpr double most_at_node = 10;     // largest ratio of a node's mass to that at rest
 constexpr double most_of_model = 0.01;  // largest proportion of the model's mass
-constexpr double missing_again = 1.1;   // ratio of the squared frequency to the allowed one
 constexpr double margin = 1.25;         // on the squared frequency, so that growing distortion seldom needs more
+// Of what was added, beyond this part of the most, this share stays; relative growths below the least end.
+constexpr double kept = 0.5, kept_share = 0.9, least_growth = 0.01;
 
 }  // namespace
 
@@ -82,9 +83,28 @@ std::vector<AddedMass> MassInMotion::raise(const std::vector<FoundMode>& modes, 
   return raised;
 }
 
+std::vector<AddedMass> MassInMotion::fade(std::vector<double>& node_mass, std::vector<AddedMass>& added) const
+{
+  std::vector<AddedMass> faded, left;
+  if (proportion(added) <= kept * most_of_model)
+    return faded;
+  for (AddedMass mass : added)
+  {
+    const double before = mass.now, more = kept_share * (before - mass.before);
+    mass.now = more > least_growth * mass.before ? mass.before + more : mass.before;
+    node_mass[mass.node] = mass.now;
+    faded.push_back({ mass.node, before, mass.now });
+    if (mass.now > mass.before)
+      left.push_back(mass);
+  }
+  added = std::move(left);
+  return faded;
+}
+
 std::vector<std::int32_t> nodes_of(const std::vector<AddedMass>& added)
 {
   std::vector<std::int32_t> nodes;
+  nodes.reserve(added.size());
   for (const AddedMass& mass : added)
     nodes.push_back(static_cast<std::int32_t>(mass.node));
   return nodes;

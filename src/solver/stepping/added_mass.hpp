@@ -24,7 +24,7 @@ struct FoundMode
   std::vector<ModeShare> shares;  ///< in ascending order of nodes
 };
 
-/// A node that has got mass.
+/// A node whose mass has changed.
 struct AddedMass
 {
   std::int64_t node;   // as wide as the others, so that no byte of the struct is undefined
@@ -48,6 +48,9 @@ public:
   std::vector<AddedMass> raise(const std::vector<FoundMode>& modes, std::vector<double>& node_mass,
                                std::vector<AddedMass>& added) const;
   double allowed() const { return allowed_; }
+  /// Takes back a tenth of what was added, if much was, so that mass which earlier poses needed is there for later
+  /// ones. Returns what has changed.
+  std::vector<AddedMass> fade(std::vector<double>& node_mass, std::vector<AddedMass>& added) const;
   /// Proportion of the model's mass.
   double proportion(const std::vector<AddedMass>& added) const;
 

@@ -15,20 +15,27 @@ constexpr double search_again = 1.35;
 double TimeStepper::search_frequency(const std::vector<float>& activation)
 {
   conditions_.activation = effects_.felt(activation);
+  masses_changed(mass_in_motion_.fade(discretisation_.node_mass, motion_.added));
   double squared = backend_->highest_frequency_squared();
   for (int round = 0; round < 2 && mass_in_motion_.limits(squared, motion_.added); ++round)
   {
     const auto modes = backend_->modes_above(mass_in_motion_.allowed());
-    const auto raised = mass_in_motion_.raise(modes, discretisation_.node_mass, motion_.added);
-    if (ledger_)
-      ledger_->masses_raised(raised);
-    backend_->masses_changed(nodes_of(raised));
+    masses_changed(mass_in_motion_.raise(modes, discretisation_.node_mass, motion_.added));
     // The frequency falls as mass is added. Searching again at once pays only if it falls much.
     if (round > 0 || squared < search_again * mass_in_motion_.allowed())
       break;
     squared = backend_->highest_frequency_squared();
   }
   return squared;
+}
+
+void TimeStepper::masses_changed(const std::vector<AddedMass>& changed)
+{
+  if (changed.empty())
+    return;
+  if (ledger_)
+    ledger_->masses_changed(changed);
+  backend_->masses_changed(nodes_of(changed));
 }
 
 void TimeStepper::replace_masses(const std::vector<AddedMass>& before)

@@ -80,6 +80,8 @@ private:
   void renew_assembled_estimate(const Controls& asked);
   /// Squared highest frequency [1/s2] at these activations, after mass has been added where that is wanted.
   double search_frequency(const std::vector<float>& activation);
+  /// Tells the other parts that masses of the discretisation have changed.
+  void masses_changed(const std::vector<AddedMass>& changed);
   /// Gives nodes the masses that motion_ says, instead of those that were added before.
   void replace_masses(const std::vector<AddedMass>& before);
   StepPlan plan_to(const Controls& next, const TimeStepController::Choice& choice);
