@@ -185,7 +185,7 @@ TEST(AddedMass, fades_once_much_was_added)
     mode.shares.push_back({ n, 1.0F / 4000 });
   mass.raise({ mode }, node_mass, added);
   const double much = mass.proportion(added);
-  EXPECT_GT(much, 0.005);
+  EXPECT_GT(much, 0.0075);
   const auto faded = mass.fade(node_mass, added);
   EXPECT_NEAR(faded[0].now - discretisation.node_mass[3], 0.9 * (faded[0].before - discretisation.node_mass[3]), 1e-12);
   EXPECT_EQ(node_mass[3], faded[0].now);

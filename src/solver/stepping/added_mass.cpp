@@ -18,7 +18,7 @@ constexpr double most_at_node = 10;     // largest ratio of a node's mass to tha
 constexpr double most_of_model = 0.01;  // largest proportion of the model's mass
 constexpr double margin = 1.25;         // on the squared frequency, so that growing distortion seldom needs more
 // Of what was added, beyond this part of the most, this share stays; relative growths below the least end.
-constexpr double kept = 0.5, kept_share = 0.9, least_growth = 0.01;
+constexpr double kept = 0.75, kept_share = 0.9, least_growth = 0.01;
 
 }  // namespace
 

@@ -25,6 +25,7 @@ constexpr double fully_relaxed = 1e9;  // a time longer than any time constant [
 // Plans are short while a muscle's activation is farther than this from its target, because tissue then stiffens fast.
 constexpr float response_left = 0.1F;
 constexpr double plan_of_muscles = 4e-3;  // [s]
+constexpr double swinging = 0.1;          // time for which tissue swings after a change of poses or activations [s]
 // During dynamic relaxation, a window ends after this number of steps even if no motion is found.
 constexpr int steps_per_window = 2048;
 
@@ -192,7 +193,13 @@ void TimeStepper::renew_assembled_estimate(const Controls& asked)
   std::vector<float> most = motion_.activation;
   for (std::size_t m = 0; m < most.size(); ++m)
     most[m] = std::max({ most[m], motion_.controls.activation[m], asked.activation[m] });
-  controller_.renew_assembled(most, !same_poses(asked.bone, motion_.controls.bone), search);
+  const bool moving = !same_poses(asked.bone, motion_.controls.bone);
+  if (moving || most != motion_.activation)
+    motion_.changed = motion_.time;
+  // Tissue that swings on distorts voxels. If these got mass, others are as close to the limit, and the bound at nodes
+  // does not tell of them.
+  const bool swings = !motion_.added.empty() && motion_.time - motion_.changed < swinging;
+  controller_.renew_assembled(most, moving || swings, search);
 }
 
 // Makes a plan that ends with the controls `next`, and advances the muscles' activations to its end.

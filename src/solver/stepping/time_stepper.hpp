@@ -62,13 +62,14 @@ private:
     std::vector<float> activation;
     std::vector<AddedMass> added;
     double time = 0;         // [s]
+    double changed = 0;      // latest time at which poses or activations changed [s]
     double latest_step = 0;  // [s]; 0: no step has been made
     bool diverged = false;
 
     void archive(ByteArchive& archive)
     {
       bones.archive(archive);
-      archive(controls.activation)(controls.bone)(activation)(added)(time)(latest_step)(diverged);
+      archive(controls.activation)(controls.bone)(activation)(added)(time)(changed)(latest_step)(diverged);
     }
   };
   struct MotionSnapshot;
