@@ -46,14 +46,14 @@ double AssembledEstimate::frequency_squared(double growth) const
 }
 
 bool AssembledEstimate::renew(const std::vector<float>& activation, bool moving, double growth, double most,
-                              const Search& search)
+                              const Search& search, bool closely)
 {
   activation_.resize(activation.size());
   bool activated = false;
   for (std::size_t m = 0; m < activation.size(); ++m)
     activated = activated || activation[m] > activation_[m];
   if (moving)
-    steps_valid_ = std::min(steps_valid_, steps_in_motion(found_));
+    steps_valid_ = std::min(steps_valid_, std::max(fewest_valid, steps_in_motion(found_) / (closely ? 2 : 1)));
   const bool grown =
       known() && covered(growth) > growth_allowed * (found_ + growth_) && steps_ >= steps_until_growth_counts;
   if (known() && !activated && !grown && steps_ < steps_valid_)

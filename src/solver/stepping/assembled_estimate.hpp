@@ -35,8 +35,10 @@ public:
   void steps_taken(int steps) { steps_ += steps; }
   /// Searches if this is due, and says whether it did. `activation`: the largest activations until the next call.
   /// `moving`: whether bones move, so that tissue stiffens where no muscle acts. `growth`: at present. `most`: bound at
-  /// rest. With the growth it is the largest estimate, and the one if the search finds no number.
-  bool renew(const std::vector<float>& activation, bool moving, double growth, double most, const Search& search);
+  /// rest. With the growth it is the largest estimate, and the one if the search finds no number. `closely`: whether
+  /// voxels are so close to the limit that tissue in motion needs twice as many searches.
+  bool renew(const std::vector<float>& activation, bool moving, double growth, double most, const Search& search,
+             bool closely = false);
   /// Forgets what was found. Call it when displacements were set from outside.
   void discard();
   void archive(ByteArchive& archive) { archive(found_)(growth_)(softest_)(latest_)(steps_)(steps_valid_)(activation_); }

@@ -133,9 +133,9 @@ void TimeStepController::observe(double measured, int steps)
 }
 
 void TimeStepController::renew_assembled(const std::vector<float>& activation, bool moving,
-                                         const AssembledEstimate::Search& search)
+                                         const AssembledEstimate::Search& search, bool closely)
 {
-  if (state_.assembled.renew(activation, moving, state_.latest_measured, bound_at_rest_, search))
+  if (state_.assembled.renew(activation, moving, state_.latest_measured, bound_at_rest_, search, closely))
     state_.measured = state_.latest_measured;
 }
 

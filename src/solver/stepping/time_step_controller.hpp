@@ -74,7 +74,8 @@ public:
     state_.assembled.discard();
   }
   /// Searches for the highest frequency of the assembled model if this is due (AssembledEstimate::renew()).
-  void renew_assembled(const std::vector<float>& activation, bool moving, const AssembledEstimate::Search& search);
+  void renew_assembled(const std::vector<float>& activation, bool moving, const AssembledEstimate::Search& search,
+                       bool closely = false);
   void reset();
 
   const State& state() const { return state_; }

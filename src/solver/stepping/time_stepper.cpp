@@ -199,7 +199,7 @@ void TimeStepper::renew_assembled_estimate(const Controls& asked)
   // Tissue that swings on distorts voxels. If these got mass, others are as close to the limit, and the bound at nodes
   // does not tell of them.
   const bool swings = !motion_.added.empty() && motion_.time - motion_.changed < swinging;
-  controller_.renew_assembled(most, moving || swings, search);
+  controller_.renew_assembled(most, moving || swings, search, !motion_.added.empty());
 }
 
 // Makes a plan that ends with the controls `next`, and advances the muscles' activations to its end.
