@@ -111,8 +111,8 @@ void CudaSolver::step(const StepArguments& g)
   present_ = (present_ + steps) & 1;
 }
 
-// Makes all steps in one launch if the host has nothing to do between them, else in one launch per step. The forces of
-// parts that have kernels of their own change the velocities before each step.
+// Makes as many steps per launch as loads allow if no other part has kernels, else one. The forces of parts that have
+// kernels of their own change the velocities before each step.
 void CudaSolver::do_steps(const StepPlan& plan, StepArguments& g, int begin, int end)
 {
   const auto running = device_.running_parts();
@@ -120,23 +120,20 @@ void CudaSolver::do_steps(const StepPlan& plan, StepArguments& g, int begin, int
   for (DevicePart* const part : running)
     if (!launch_.patches || part->has_kernels(stays()))
       pushing.push_back(part);
-  if (stays() && pushing.empty())
-  {
-    begin_steps(g, begin, end);
-    return step(g);
-  }
+  const bool stay = stays() && pushing.empty();
   g.contact.blocks_beside = 0;
   for (const DevicePart* const part : pushing)
     g.contact.blocks_beside += adds_stress() ? part->blocks_beside() : 0;
-  for (int s = begin; s < end; ++s)
+  for (int s = begin, next = begin; s < end; s = next)
   {
+    next = stay ? device_.loads().end_of_launch(s, end) : s + 1;
     device_.loads().update(g, s, u_[present_].data(), stream_);
     if (account_)
     {
       g.first = present_;
       account_->before_step(g, s, stream_);
     }
-    begin_steps(g, s, s + 1);
+    begin_steps(g, s, next);
     for (const DevicePart* const part : pushing)
     {
       if (g.contact.blocks_beside == 0 || part->blocks_beside() == 0)
@@ -164,7 +161,7 @@ bool CudaSolver::adds_stress() const
 }
 
 // Whether patches can make many steps per launch.
-bool CudaSolver::stays() const { return launch_.patches && !account_ && !device_.loads().follow(); }
+bool CudaSolver::stays() const { return launch_.patches && !account_; }
 
 double CudaSolver::run(const StepPlan& plan)
 {

@@ -155,22 +155,23 @@ bool DeviceLoads::acts(const Load& load, const StepPlan& plan) const
 
 void DeviceLoads::begin(const StepPlan& plan)
 {
-  acts_ = follows_ = false;
-  for (const Load& load : model_.loads)
-    if (acts(load, plan))
-    {
-      acts_ = true;
-      follows_ = follows_ || load.kind == Load::Kind::pressure;
-    }
+  acts_ = std::any_of(model_.loads.begin(), model_.loads.end(), [&](const Load& load) { return acts(load, plan); });
+}
+
+int DeviceLoads::end_of_launch(int step, int end) const
+{
+  return presses() ? std::min(end, step - step % steps_per_pressure + steps_per_pressure) : end;
 }
 
 void DeviceLoads::update(StepArguments& g, int step, const float4* u, cudaStream_t stream)
 {
-  if (!follows_)
+  if (!presses())
+    return;
+  g.load_force = node_force_.data();
+  if (step % steps_per_pressure != 0)
     return;
   require(launch_pressure(pressed_.view(), pressure_.data(), u, surface_force_.data() + traction_.size(), stream),
           "forces of a pressure");
-  g.load_force = node_force_.data();
   require(launch_node_loads(g, static_cast<std::uint32_t>(nodes_.size()), step, node_force_.data(), stream),
           "forces of loads");
 }

@@ -27,18 +27,18 @@ public:
   const double* relief() const { return relief_.data(); }
   const LoadGrowth* growth() const { return growth_.data(); }
 
-  /// Begins a plan. Without an activation, an activated load neither follows its surface nor acts.
+  /// Begins a plan. An activated load acts only if it has an activation.
   void begin(const StepPlan& plan);
   /// Whether a load acts in this plan.
   bool act() const { return acts_; }
-  /// Whether a load that acts in this plan follows its surface, so that forces change in every step.
-  bool follow() const { return follows_; }
+  /// End of the launch that begins with a step of this plan, if no other part ends it before `end`.
+  int end_of_launch(int step, int end) const;
   /// Switches loads and the correction of gravity on or off with their effects.
   void run(EffectSet running) override;
   void reset() override {}
   bool idle() const { return !(runs_ && surface_force_.size() > 0) && !(relieves_ && relief_.size() > 0); }
   void list_arrays(ArrayList& list) override;
-  /// Finds the forces on nodes in a step of the plan, if loads follow their surfaces.
+  /// Finds the forces on nodes at the start of a launch of steps, if there are follower pressures.
   void update(StepArguments& g, int step, const float4* u, cudaStream_t stream);
 
 private:
@@ -50,9 +50,11 @@ private:
   std::vector<double> surface_forces() const;
   /// Whether a load acts at any time of a plan.
   bool acts(const Load& load, const StepPlan& plan) const;
+  /// Whether forces change with the shape of surfaces in this plan.
+  bool presses() const { return acts_ && pressure_.size() > 0; }
 
   const Model& model_;
-  bool runs_ = true, relieves_ = true, acts_ = false, follows_ = false;
+  bool runs_ = true, relieves_ = true, acts_ = false;
   std::vector<double> traction_;  // forces of tractions on the vertices, three per vertex [N]
   std::vector<std::int32_t> nodes_;
   DeviceArray<std::int32_t> begin_;

@@ -1,6 +1,9 @@
 #include "backends.hpp"
 #include "block_model.hpp"
 
+#include "solver/stepping/discretisation.hpp"
+#include "solver/stepping/nodal_loads.hpp"
+
 #include <cmath>
 
 using namespace frontalis;
@@ -165,6 +168,37 @@ TEST_P(Loads, ActivationSetsThePressureWhileContractionIsOff)
   EXPECT_LT(by_pressure, 0.97);
   EXPECT_LT(reached({ 0.5F, 0.7F }, true), by_pressure - 0.02) << "the muscle shortens the block";
   EXPECT_NEAR(reached({ 0.5F, 0.7F }, false), by_pressure, 1e-4);
+}
+
+TEST(NodalLoads, KeepThePressureForFourStepsOfAPlan)
+{
+  test::BlockSettings s;
+  const Model model = loaded_block(Load::Kind::pressure, { { 100, 0, 0 } }, s);
+  NodalLoads<double> loads(model, Discretisation(model));
+  std::vector<double> u[3];
+  for (int axis = 0; axis < 3; ++axis)
+    for (const auto& node : model.nodes)
+      u[axis].push_back(axis < 2 ? 0.01 * model.spacing[axis] * node[axis] : 0);
+  // Returns the total force after a step at u, whose x and y components are multiplied first.
+  const auto force_after = [&](int index, double factor)
+  {
+    for (int axis = 0; axis < 2; ++axis)
+      for (double& x : u[axis])
+        x *= factor;
+    ConstraintStep step;
+    step.index = index;
+    step.time_before = 1;
+    const double* const pointers[3] = { u[0].data(), u[1].data(), u[2].data() };
+    loads.before_step({ 0, 1, 0, 0, 0, 0 }, pointers, step);
+    double sum = 0;
+    for (const auto& force : loads.forces())
+      sum += force[2];
+    return sum;
+  };
+  const double first = force_after(0, 1);
+  for (int index = 1; index < 4; ++index)
+    EXPECT_EQ(force_after(index, 2), first);
+  EXPECT_NEAR(force_after(4, 1) / first, 1.08 * 1.08 / (1.01 * 1.01), 1e-6);
 }
 
 FRONTALIS_EVERY_BACKEND(Loads);

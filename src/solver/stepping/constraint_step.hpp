@@ -16,6 +16,7 @@ struct ConstraintStep
   std::vector<RigidTransform> bone;         ///< poses at the end of the step
   std::vector<RigidTransform> bone_before;  ///< poses at the start of the step
   std::vector<float> activation;            ///< of each muscle during the step
+  int index = 0;                            ///< in the plan of steps
 };
 
 }  // namespace frontalis

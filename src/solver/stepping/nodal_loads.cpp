@@ -86,6 +86,7 @@ NodalLoads<Real>::NodalLoads(const Model& model, const Discretisation& discretis
   {
     if (load.kind == Load::Kind::displacement)
       continue;
+    presses_ = presses_ || load.kind == Load::Kind::pressure;
     std::vector<std::vector<Contribution>> by_node(nodes_.size());
     for (std::size_t vertex = 0; vertex < load.binding.voxel.size(); ++vertex)
     {

@@ -15,6 +15,10 @@ std::vector<std::int32_t> relieved_nodes(const Model& model, const Discretisatio
 /// The force [N] on a node of relieved_nodes() that cancels the weight of the added mass.
 std::array<double, 3> gravity_relief(const Model& model, const Discretisation& discretisation, std::int32_t node);
 
+/// Steps of a plan for which the forces of surface loads are kept in a model with a follower pressure. A surface turns
+/// little in them, and a GPU makes them in one launch.
+constexpr int steps_per_pressure = 4;
+
 /// Fraction of a load that acts at a time [s]: that of its ramp, or its activation.
 inline double acting_share(const Load& load, double time, const std::vector<float>& activation)
 {
@@ -36,7 +40,7 @@ public:
   bool pushes() const override { return true; }
   void before_step(const NodeShare& share, const Real* const u[3], const ConstraintStep& step) override
   {
-    if (share.thread == 0)
+    if (share.thread == 0 && (!presses_ || step.index % steps_per_pressure == 0))
       update(step.time_before, step.activation, u);
   }
   void add_forces(const NodeShare& share, const ForceSink<Real>& sink) override;
@@ -80,6 +84,7 @@ private:
   std::vector<std::array<double, 3>> relief_;  // correction of gravity, one per loaded node; empty without scaled mass
   std::vector<Surface> surfaces_;
   bool runs_ = true, relieves_ = true;
+  bool presses_ = false;  // whether the model has follower pressures
 };
 
 }  // namespace frontalis

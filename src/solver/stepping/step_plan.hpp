@@ -49,7 +49,7 @@ struct StepPlan
   }
   ConstraintStep constraint_step(int step) const
   {
-    ConstraintStep now{ time + (step + 1) * dt, dt, time + step * dt, {}, {}, {} };
+    ConstraintStep now{ time + (step + 1) * dt, dt, time + step * dt, {}, {}, {}, step };
     for (std::size_t b = 0; b < begin.bone.size(); ++b)
     {
       now.bone.push_back(interpolate(begin.bone[b], end.bone[b], fraction(step)));
