@@ -147,16 +147,24 @@ std::vector<BodyState> BodyContact<Real>::next(const ConstraintStep& step) const
 }
 
 template <class Real>
-void BodyContact<Real>::find_force(std::size_t p, const Real* const u[3], const BodyState& body, double response)
+void BodyContact<Real>::find_force(std::size_t p, const Real* const u[3], const BodyState& body, double response,
+                                   const PointPlaces<Real>* places)
 {
   const Point& point = points_[p];
   const double stiffness = double(point.stiffness);
   const Contact& contact = model_.contacts[point.body];
   const physics::DistanceField& field = fields_[point.body];
   const physics::Pose pose = pose_of(body.pose);
-  const Vector x = pose.inwards(place(point, u)), arm = pose.turned(x);
+  Vector x{};
   physics::FieldValue<double> value{};
-  const bool sampled = blocks_.sample(field, p, x, value);
+  // Displacements from the anchors of friction need double precision.
+  bool sampled = places != nullptr && contact.friction == 0 && blocks_.read(*places, p % chunk_size, field, value, x);
+  if (!sampled)
+  {
+    x = pose.inwards(place(point, u));
+    sampled = blocks_.sample(field, p, x, value);
+  }
+  const Vector arm = pose.turned(x);
   physics::Grip<double>& grip = grips_[p];
   due_[p] = 0;
   if (sampled && value.value < 0)
@@ -175,7 +183,7 @@ void BodyContact<Real>::find_force(std::size_t p, const Real* const u[3], const 
   grip.normal = 0;
   // The value divided by the steepest slope is a lower bound of the distance from the body.
   if (touches_[p] == Touching::no)
-    due_[p] = body.way + (sampled ? value.value / physics::steepest_field
+    due_[p] = body.way + (sampled ? (value.value - distance_error) / physics::steepest_field
                                   : physics::distance_without_samples(field, contact.reach, x)) /
                              spread_[p];
 }
@@ -198,7 +206,7 @@ void BodyContact<Real>::before_step(const NodeShare& share, const Real* const u[
       continue;
     chunk = { std::numeric_limits<double>::max(), 0 };
     const std::size_t first = c * chunk_size, last = std::min(first + chunk_size, points_.size());
-    // A point that has touched has been due ever since. Its force is found in any case, so that its distance is not.
+    // A point that has touched has been due ever since.
     std::uint32_t wanted = 0, away_before = 0;
     for (std::size_t p = first; p < last; ++p)
       if (!(due_[p] > now.front().way))
@@ -206,9 +214,10 @@ void BodyContact<Real>::before_step(const NodeShare& share, const Real* const u[
         wanted |= 1U << (p - first);
         away_before |= due_[p] > 0 ? 1U << (p - first) : 0;
       }
-    Real distance[chunk_size];
-    if (blocks_.present() && away_before != 0)
-      blocks_.find(c, u, bodies, away_before, distance);
+    PointPlaces<Real> places;
+    const bool found = blocks_.present() && wanted != 0;
+    if (found)
+      blocks_.find(c, u, bodies, wanted, places);
     for (std::size_t p = first; p < last; ++p)
     {
       if ((wanted >> (p - first) & 1) == 0)
@@ -216,12 +225,12 @@ void BodyContact<Real>::before_step(const NodeShare& share, const Real* const u[
         chunk.due = std::min(chunk.due, due_[p]);
         continue;
       }
-      const bool found = blocks_.present() && (away_before >> (p - first) & 1) != 0;
-      const double away = found ? double(distance[p - first]) - distance_error : 0;
+      const bool was_away = found && (away_before >> (p - first) & 1) != 0;
+      const double away = was_away ? double(places.distance[p - first]) - distance_error : 0;
       if (away > 0)
         due_[p] = now.front().way + away / (physics::steepest_field * spread_[p]);
       else
-        find_force(p, u, now[points_[p].body], response);
+        find_force(p, u, now[points_[p].body], response, found ? &places : nullptr);
       chunk.due = std::min(chunk.due, due_[p]);
       chunk.touches |= touches_[p] != Touching::no ? 1 : 0;
     }

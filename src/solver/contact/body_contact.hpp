@@ -125,8 +125,9 @@ private:
   Energy energy_now(const Real* const u[3], const std::vector<RigidTransform>& bones,
                     std::vector<std::array<double, 3>>& forces) const;
   std::vector<BodyState> next(const ConstraintStep& step) const;
-  /// Finds the force on a point.
-  void find_force(std::size_t p, const Real* const u[3], const BodyState& body, double response);
+  /// Finds the force on a point. `places`: those of its chunk, or null.
+  void find_force(std::size_t p, const Real* const u[3], const BodyState& body, double response,
+                  const PointPlaces<Real>* places);
   physics::Grip<double> grip_at(std::size_t p, const Vector& x) const
   {
     const auto& grip = grips_[p];

@@ -60,11 +60,26 @@ public:
     return body;
   }
 
-  /// Finds the distances of points of a block (PointKernel).
+  /// Finds the places of points of a block (PointKernel).
   void find(std::size_t block, const Real* const u[3], const std::vector<PosedBody<Real>>& bodies, std::uint32_t wanted,
-            Real* distance)
+            PointPlaces<Real>& places)
   {
-    kernel_(blocks_[block], u, bodies.data(), wanted, distance);
+    kernel_(blocks_[block], u, bodies.data(), wanted, places);
+  }
+  /// Reads what find() found for a lane: the field and the position in the body's frame. Returns false if it found no
+  /// samples.
+  static bool read(const PointPlaces<Real>& places, std::size_t lane, const physics::DistanceField& field,
+                   physics::FieldValue<double>& value, Vector& x)
+  {
+    if (!(places.distance[lane] > Real(0.5) * Block::none))
+      return false;
+    const auto vector = [lane](const Real(&from)[3][Block::width]) {
+      return Vector{ double(from[0][lane]), double(from[1][lane]), double(from[2][lane]) };
+    };
+    value.value = double(places.distance[lane]);
+    value.gradient = (1 / field.spacing) * vector(places.gradient);
+    x = Vector{ field.origin[0], field.origin[1], field.origin[2] } + field.spacing * vector(places.offset);
+    return true;
   }
 
   /// Finds the field of point p's body at x, in the frame of the body. Returns false where no samples are stored. The

@@ -7,7 +7,8 @@ namespace frontalis
 SlideKernels<float> slide_kernels_avx512();
 ShellKernels<float> shell_kernels_avx512();
 TouchKernels<float> touch_kernels_avx512();
-void point_kernel_avx512(PointBlock<float>&, const float* const[3], const PosedBody<float>*, std::uint32_t, float*);
+void point_kernel_avx512(PointBlock<float>&, const float* const[3], const PosedBody<float>*, std::uint32_t,
+                         PointPlaces<float>&);
 void attach_kernel_avx512(const AttachArguments<float>&, std::int32_t, std::int32_t);
 
 CpuKernelChoice cpu_kernel_avx512(const char* name)

@@ -33,11 +33,19 @@ struct PosedBody
   const physics::DistanceField* field;
 };
 
-/// Finds the distances [m] of points of a block from their bodies at the displacements u of nodes. Distances are
-/// negative where no samples are stored, and from spheres. Those of lanes whose bit is not set in `wanted` are
-/// meaningless.
+/// Points of a block beside their bodies. Lengths are in spacings of the body's field, unless noted otherwise.
+template <class Real>
+struct PointPlaces
+{
+  Real distance[PointBlock<Real>::width];     ///< from the body [m]; PointBlock::none from spheres and without samples
+  Real gradient[3][PointBlock<Real>::width];  ///< of `distance`, in the body's frame [m]
+  Real offset[3][PointBlock<Real>::width];    ///< position relative to the field's origin, in the body's frame
+};
+
+/// Finds the places of points of a block at the displacements u of nodes. Those of lanes whose bit is not set in
+/// `wanted` are meaningless.
 template <class Real>
 using PointKernel = void (*)(PointBlock<Real>& block, const Real* const u[3], const PosedBody<Real>* bodies,
-                             std::uint32_t wanted, Real* distance);
+                             std::uint32_t wanted, PointPlaces<Real>& places);
 
 }  // namespace frontalis

@@ -90,7 +90,8 @@ struct PointKernelBody
     }
   }
 
-  static FRONTALIS_LAW Batch distance(Block& b, int lane, const Vector& x, std::uint32_t wanted, const Body* bodies)
+  static FRONTALIS_LAW physics::FieldValue<Batch> sample(Block& b, int lane, const Vector& x, std::uint32_t wanted,
+                                                         const Body* bodies)
   {
     const Batch half(0.5f);
     const Vector cell{ xsimd::floor(x.x + half), xsimd::floor(x.y + half), xsimd::floor(x.z + half) };
@@ -100,11 +101,18 @@ struct PointKernelBody
       if (const auto entered = Lanes::positive(xsimd::select(kept, Batch(0.0f), Batch(1.0f))) & wanted >> lane;
           entered != 0)
         enter(b, lane, entered, bodies, cell);
-    return physics::spline(samples_at(b.samples[0] + lane, std::make_index_sequence<27>()), Batch(1.0f), x - cell)
-        .value;
+    return physics::spline(samples_at(b.samples[0] + lane, std::make_index_sequence<27>()), Batch(1.0f), x - cell);
   }
 
-  static void run(Block& b, const float* const u[3], const Body* bodies, std::uint32_t wanted, float* result)
+  static FRONTALIS_LAW void store(const Vector& x, float (&to)[3][Block::width], int lane)
+  {
+    Lanes::store(x.x, to[0] + lane);
+    Lanes::store(x.y, to[1] + lane);
+    Lanes::store(x.z, to[2] + lane);
+  }
+
+  static void run(Block& b, const float* const u[3], const Body* bodies, std::uint32_t wanted,
+                  PointPlaces<float>& places)
   {
     for (int lane = 0; lane < Block::width; lane += Lanes::count)
     {
@@ -116,7 +124,10 @@ struct PointKernelBody
         const Vector other = inwards(bodies[body], p);
         x = { xsimd::select(same, other.x, x.x), xsimd::select(same, other.y, x.y), xsimd::select(same, other.z, x.z) };
       }
-      Lanes::store(distance(b, lane, x, wanted, bodies), result + lane);
+      const auto value = sample(b, lane, x, wanted, bodies);
+      Lanes::store(value.value, places.distance + lane);
+      store(value.gradient, places.gradient, lane);
+      store(x, places.offset, lane);
     }
   }
 };

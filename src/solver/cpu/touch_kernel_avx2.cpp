@@ -8,9 +8,9 @@ namespace frontalis
 TouchKernels<float> touch_kernels_avx2() { return TouchKernelBody<RecordLanes<xsimd::fma3<xsimd::avx2>>>::kernels(); }
 
 void point_kernel_avx2(PointBlock<float>& block, const float* const u[3], const PosedBody<float>* bodies,
-                       std::uint32_t wanted, float* distance)
+                       std::uint32_t wanted, PointPlaces<float>& places)
 {
-  PointKernelBody<xsimd::fma3<xsimd::avx2>>::run(block, u, bodies, wanted, distance);
+  PointKernelBody<xsimd::fma3<xsimd::avx2>>::run(block, u, bodies, wanted, places);
 }
 
 }  // namespace frontalis

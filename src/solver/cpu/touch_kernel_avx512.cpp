@@ -8,9 +8,9 @@ namespace frontalis
 TouchKernels<float> touch_kernels_avx512() { return TouchKernelBody<RecordLanes<xsimd::avx512bw>>::kernels(); }
 
 void point_kernel_avx512(PointBlock<float>& block, const float* const u[3], const PosedBody<float>* bodies,
-                         std::uint32_t wanted, float* distance)
+                         std::uint32_t wanted, PointPlaces<float>& places)
 {
-  PointKernelBody<xsimd::avx512bw>::run(block, u, bodies, wanted, distance);
+  PointKernelBody<xsimd::avx512bw>::run(block, u, bodies, wanted, places);
 }
 
 }  // namespace frontalis
