@@ -78,9 +78,10 @@ private:
   {
     void operator()(FrequencySearch* search) const;
   };
+  /// Copies the present activations to the device.
+  const float* present_activation();
   void prepare_search();
   void prepare_followers(const std::vector<double>& root);
-  void keep_vector(int iteration, const float4* vector);
   std::vector<ModeShare> shares_in(const std::vector<double>& mode);
 
   const std::string remark_;  // appended to the description
@@ -90,6 +91,7 @@ private:
   DeviceSurface skin_, landmarks_;
   DeviceArray<float> skin_output_;  // vertices, normals, landmarks
   PinnedArray<float> skin_staged_;
+  DeviceArray<float> activation_;     // for forces at rest, one per muscle
   DeviceArray<std::uint32_t> still_;  // device nodes that never move
   std::uint32_t steps_before_ = 0;    // steps queued since the solver was made
   cudaStream_t stream_ = nullptr;

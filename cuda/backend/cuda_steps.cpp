@@ -262,13 +262,20 @@ void CudaSolver::queue_forces(float4* at, const float* activation, float4* out, 
     }
 }
 
+const float* CudaSolver::present_activation()
+{
+  if (activation_.size() == 0)
+    activation_ = DeviceArray<float>(conditions_.activation.size());
+  activation_.upload(conditions_.activation.data(), activation_.size());
+  return activation_.data();
+}
+
 void CudaSolver::internal_forces(NodalVectors& out)
 {
   synchronise();
-  const DeviceArray<float> activation(conditions_.activation);
   const DeviceArray<float4> forces(device_.nodes());
   require(cudaMemset(forces.data(), 0, forces.bytes()), "clearing forces");
-  queue_forces(u_[present_].data(), activation.data(), forces.data());
+  queue_forces(u_[present_].data(), present_activation(), forces.data());
   synchronise();
   download(forces, out);
 }
@@ -277,8 +284,7 @@ Work CudaSolver::work(bool open)
 {
   synchronise();
   StepArguments g = arguments(0);
-  const DeviceArray<float> activation(conditions_.activation);
-  g.activation_begin = g.activation_end = activation.data();
+  g.activation_begin = g.activation_end = present_activation();
   g.steps = 1;
   if (open)
   {

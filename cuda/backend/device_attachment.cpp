@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <numeric>
 #include <tuple>
-#include <type_traits>
 #include <unordered_map>
 
 namespace frontalis
@@ -99,7 +98,9 @@ DeviceAttachment::DeviceAttachment(const Model& model, const std::vector<double>
 }
 
 DeviceAttachment::DeviceAttachment(const AttachedTables& tables)
-    : groups_(tables.groups),
+    : host_groups_(tables.groups),
+      host_ties_(tables.ties),
+      groups_(tables.groups),
       ties_(tables.ties),
       places_(tables.places),
       planes_(tables.places.size()),
@@ -115,17 +116,20 @@ void DeviceAttachment::masses_changed(const std::vector<InverseMass>& masses)
   std::unordered_map<std::uint32_t, float> mass_of;
   for (const InverseMass& mass : masses)
     mass_of[mass.node] = 1 / mass.own;
-  const auto change = [&](auto& array, auto node_of)
+  const auto change = [&](auto& entries, auto& array, auto node_of)
   {
-    std::vector<std::decay_t<decltype(*array.data())>> entries;
-    array.download(entries);
+    bool changed = false;
     for (auto& entry : entries)
       if (const auto found = mass_of.find(node_of(entry)); found != mass_of.end())
+      {
         entry.mass = found->second;
-    array.upload(entries.data(), entries.size());
+        changed = true;
+      }
+    if (changed)
+      array.upload(entries.data(), entries.size());
   };
-  change(groups_, [](const AttachedGroup& group) { return group.master; });
-  change(ties_, [](const AttachedTie& tie) { return tie.node; });
+  change(host_groups_, groups_, [](const AttachedGroup& group) { return group.master; });
+  change(host_ties_, ties_, [](const AttachedTie& tie) { return tie.node; });
 }
 
 void DeviceAttachment::describe(StepArguments& g) const

@@ -49,6 +49,9 @@ public:
 private:
   explicit DeviceAttachment(const AttachedTables& tables);
 
+  // as they are on the device, for changes of masses
+  std::vector<AttachedGroup> host_groups_;
+  std::vector<AttachedTie> host_ties_;
   DeviceArray<AttachedGroup> groups_;
   DeviceArray<AttachedTie> ties_;
   DeviceArray<AttachedPlace> places_;

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstring>
 #include <numeric>
-#include <utility>
 
 namespace frontalis
 {
@@ -16,15 +15,6 @@ namespace
 // The host waits for the iterations of a search after series of these lengths. Most searches take 9 to 15 iterations.
 constexpr int first_series = 10, further_series = 4;
 
-// Copies the entries [begin, end) of an array to the same places.
-template <class T>
-void download_part(const DeviceArray<T>& from, std::size_t begin, std::size_t end, std::vector<T>& to)
-{
-  to.resize(from.size());
-  require(cudaMemcpy(to.data() + begin, from.data() + begin, (end - begin) * sizeof(T), cudaMemcpyDeviceToHost),
-          "copying sums of a search");
-}
-
 }  // namespace
 
 void CudaSolver::SearchDeleter::operator()(FrequencySearch* search) const { delete search; }
@@ -32,7 +22,7 @@ void CudaSolver::SearchDeleter::operator()(FrequencySearch* search) const { dele
 /// Allocates the memory of the search, and writes its random start and the sums of that.
 void CudaSolver::prepare_search()
 {
-  search_.reset(new FrequencySearch(device_.nodes()));
+  search_.reset(new FrequencySearch(device_.nodes(), model_->mass_scaling.in_motion > 0));
   NodalVectors random = random_mode(model_->nodes.size());
   const std::vector<double> root = roots_for_search(discretisation_);
   std::vector<float4> values(device_.nodes(), float4{ 0, 0, 0, 0 });
@@ -48,7 +38,8 @@ void CudaSolver::prepare_search()
       size[0] = { size[0].x + c * c, std::max(size[0].y, std::abs(c) * root[n]) };
   }
   search_->start.upload(values.data(), values.size());
-  search_->sizes.upload(size.data(), size.size());
+  require(cudaMemcpy(search_->sizes(0), size.data(), size.size() * sizeof(double2), cudaMemcpyHostToDevice),
+          "copying the sums of a start");
   if (!discretisation_.followers.empty())
     prepare_followers(root);
 }
@@ -83,11 +74,8 @@ double CudaSolver::highest_frequency_squared()
   if (!search_)
     prepare_search();
   FrequencySearch& s = *search_;
-  const DeviceArray<float> activation(conditions_.activation);
-  queue_forces(u_[present_].data(), activation.data(), s.present.data(), true);
-  for (const auto* vector : { &s.now, &s.before })
-    require(cudaMemcpyAsync(vector->data(), s.start.data(), s.start.bytes(), cudaMemcpyDeviceToDevice, stream_),
-            "starting a search");
+  const float* const activation = present_activation();
+  queue_forces(u_[present_].data(), activation, s.present.data(), true);
   LanczosIteration g{};
   g.nodes = static_cast<std::uint32_t>(device_.nodes());
   g.mobility = s.mobility.size() > 0 ? s.mobility.data() : device_.arguments().mobility;
@@ -97,14 +85,9 @@ double CudaSolver::highest_frequency_squared()
   g.u = u_[present_].data();
   g.present = s.present.data();
   g.forces = s.forces.data();
-  g.now = s.now.data();
-  g.before = s.before.data();
   g.moved = s.moved.data();
-  const bool keeps_vectors = model_->mass_scaling.in_motion > 0;
   LanczosMatrix matrix;
   std::vector<double> lengths;
-  std::vector<double2> sizes;
-  std::vector<double> along;
   for (int i = 0; i < most_lanczos_iterations && !matrix.settled();)
   {
     const int begin = i, end = std::min(i + (i == 0 ? first_series : further_series), most_lanczos_iterations);
@@ -112,28 +95,32 @@ double CudaSolver::highest_frequency_squared()
     {
       g.amplitude = mode_amplitude(*model_, i);
       g.size_before = i == 0 ? nullptr : g.size;
-      g.size = s.sizes.data() + i * lanczos_blocks;
-      g.size_next = s.sizes.data() + (i + 1) * lanczos_blocks;
-      g.along = s.along.data() + i * lanczos_blocks;
-      if (keeps_vectors)
-        keep_vector(i, g.now);
+      g.size = s.sizes(i);
+      g.size_next = s.sizes(i + 1);
+      g.along = s.along(i);
+      g.now = s.vector(i);
+      g.before = s.vector(std::max(i - 1, 0));
+      g.after = s.vector(i + 1);
       require(launch_displace(g, stream_), "displacing nodes");
-      queue_forces(s.moved.data(), activation.data(), s.forces.data(), true);
+      queue_forces(s.moved.data(), activation, s.forces.data(), true);
       require(launch_lanczos_product(g, stream_), "a product with the stiffness");
-      std::swap(g.now, g.before);
     }
+    const std::size_t first = begin * s.sums_of_iteration, count = (end - begin) * s.sums_of_iteration + s.along_at;
+    require(cudaMemcpyAsync(s.host_sums.data() + first, s.sums.data() + first, count * sizeof(double),
+                            cudaMemcpyDeviceToHost, stream_),
+            "copying sums of a search");
     synchronise();
-    download_part(s.sizes, begin * lanczos_blocks, (end + 1) * lanczos_blocks, sizes);
-    download_part(s.along, begin * lanczos_blocks, end * lanczos_blocks, along);
     for (int row = static_cast<int>(matrix.rows()); row < i && !matrix.settled(); ++row)
     {
       const auto length = [&](int vector)
       {
-        const double2* const of = sizes.data() + vector * lanczos_blocks;
-        return std::sqrt(std::accumulate(of, of + lanczos_blocks, 0.0,
-                                         [](double sum, const double2& part) { return sum + part.x; }));
+        const double* const of = s.host_sums.data() + vector * s.sums_of_iteration;
+        double sum = 0;
+        for (int block = 0; block < lanczos_blocks; ++block)
+          sum += of[2 * block];
+        return std::sqrt(sum);
       };
-      const double* const product = along.data() + row * lanczos_blocks;
+      const double* const product = s.host_sums.data() + row * s.sums_of_iteration + s.along_at;
       lengths.push_back(length(row));
       matrix.add_row(std::accumulate(product, product + lanczos_blocks, 0.0) / lengths.back(), length(row + 1));
     }
@@ -143,22 +130,12 @@ double CudaSolver::highest_frequency_squared()
   return matrix.largest_eigenvalue();
 }
 
-void CudaSolver::keep_vector(int iteration, const float4* vector)
-{
-  auto& kept = search_->vectors;
-  if (kept.size() <= static_cast<std::size_t>(iteration))
-    kept.emplace_back(device_.nodes());
-  require(cudaMemcpyAsync(kept[iteration].data(), vector, kept[iteration].bytes(), cudaMemcpyDeviceToDevice, stream_),
-          "keeping a vector of a search");
-}
-
 std::vector<FoundMode> CudaSolver::modes_above(double frequency_squared)
 {
   FrequencySearch& s = *search_;
   if (s.node_of_device.empty())
   {
-    s.shares = DeviceArray<uint2>(static_cast<std::size_t>(1 / least_mode_share));
-    s.listed = DeviceArray<std::uint32_t>(1);
+    s.shares = DeviceArray<uint2>(1 + static_cast<std::size_t>(1 / least_mode_share));
     s.node_of_device.resize(device_.nodes());
     for (std::size_t n = 0; n < model_->nodes.size(); ++n)
       s.node_of_device[device_.device_node()[n]] = static_cast<std::int32_t>(n);
@@ -177,27 +154,25 @@ std::vector<ModeShare> CudaSolver::shares_in(const std::vector<double>& mode)
   VectorSum g{};
   for (; g.vectors < static_cast<int>(mode.size()); ++g.vectors)
   {
-    g.vector[g.vectors] = s.vectors[g.vectors].data();
+    g.vector[g.vectors] = s.vector(g.vectors);
     g.component[g.vectors] = static_cast<float>(mode[g.vectors] / s.lengths[g.vectors]);
   }
   g.nodes = static_cast<std::uint32_t>(device_.nodes());
   g.least = least_mode_share;
-  g.list = s.shares.data();
-  g.listed = s.listed.data();
-  require(cudaMemsetAsync(s.listed.data(), 0, s.listed.bytes(), stream_), "emptying a list");
+  g.list = s.shares.data() + 1;
+  g.listed = &s.shares.data()->x;
+  require(cudaMemsetAsync(g.listed, 0, sizeof *g.listed, stream_), "emptying a list");
   require(launch_list_shares(g, stream_), "listing a mode");
   synchronise();
-  std::vector<std::uint32_t> listed;
   std::vector<uint2> list;
-  s.listed.download(listed);
   s.shares.download(list);
-  list.resize(std::min<std::size_t>(list.size(), listed[0]));
+  list.resize(std::min<std::size_t>(list.size(), 1 + list[0].x));
   std::vector<ModeShare> shares;
-  for (const uint2& entry : list)
+  for (std::size_t i = 1; i < list.size(); ++i)
   {
     float share;
-    std::memcpy(&share, &entry.y, sizeof share);
-    shares.push_back({ s.node_of_device[entry.x], share });
+    std::memcpy(&share, &list[i].y, sizeof share);
+    shares.push_back({ s.node_of_device[list[i].x], share });
   }
   std::sort(shares.begin(), shares.end(), [](const ModeShare& a, const ModeShare& b) { return a.node < b.node; });
   return shares;
@@ -215,12 +190,14 @@ void CudaSolver::masses_changed(const std::vector<std::int32_t>& nodes)
     masses.push_back(
         { device_.device_node()[n], static_cast<float>(1 / own), static_cast<float>(1 / (own + following)) });
   }
-  const DeviceArray<InverseMass> changes(masses);
+  DeviceArray<InverseMass>& changes = search_->masses;
+  if (changes.size() < masses.size())
+    changes = DeviceArray<InverseMass>(2 * masses.size());
+  changes.upload(masses.data(), masses.size());
   require(launch_set_inverse_masses(changes.data(), static_cast<std::uint32_t>(masses.size()), u_[0].data(),
                                     u_[1].data(), device_.inverse_bound_masses(), search_->mobility.data(), stream_),
           "setting masses");
   device_.masses_changed(masses);
-  synchronise();
 }
 
 }  // namespace cuda

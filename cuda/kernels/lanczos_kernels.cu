@@ -1,4 +1,5 @@
 #include "cuda/kernels/lanczos_kernels.hpp"
+#include "cuda/kernels/launch_after.cuh"
 
 namespace frontalis
 {
@@ -45,6 +46,8 @@ __device__ __forceinline__ float root_of(const LanczosIteration& g, std::uint32_
 
 __global__ void __launch_bounds__(block) displace(const __grid_constant__ LanczosIteration g)
 {
+  let_next_kernel_start();
+  wait_for_kernel_before();
   const float scale = static_cast<float>(g.amplitude / joined_by_block(g.size[threadIdx.x]).y);
   for (std::uint32_t n = blockIdx.x * block + threadIdx.x; n < g.nodes; n += gridDim.x * block)
   {
@@ -57,6 +60,8 @@ __global__ void __launch_bounds__(block) displace(const __grid_constant__ Lanczo
 // One thread per master.
 __global__ void __launch_bounds__(block) move_followers(const __grid_constant__ LanczosIteration g)
 {
+  let_next_kernel_start();
+  wait_for_kernel_before();
   const std::uint32_t m = blockIdx.x * block + threadIdx.x;
   if (m >= g.masters)
     return;
@@ -72,6 +77,8 @@ __global__ void __launch_bounds__(block) move_followers(const __grid_constant__ 
 
 __global__ void __launch_bounds__(block) add_forces_of_followers(const __grid_constant__ LanczosIteration g)
 {
+  let_next_kernel_start();
+  wait_for_kernel_before();
   const std::uint32_t m = blockIdx.x * block + threadIdx.x;
   if (m >= g.masters)
     return;
@@ -91,6 +98,8 @@ __global__ void __launch_bounds__(block) add_forces_of_followers(const __grid_co
 // Writes the image of `now` at unit length, without its part along the vector before.
 __global__ void __launch_bounds__(block) multiply(const __grid_constant__ LanczosIteration g)
 {
+  let_next_kernel_start();
+  wait_for_kernel_before();
   const double2 size = joined_by_block(g.size[threadIdx.x]);
   const auto image = static_cast<float>(size.y / (g.amplitude * sqrt(size.x)));
   float back = 0;
@@ -103,7 +112,7 @@ __global__ void __launch_bounds__(block) multiply(const __grid_constant__ Lanczo
     const float share = image * root_of(g, n);
     const float4 w = make_float4(share * (f.x - p.x) - back * b.x, share * (f.y - p.y) - back * b.y,
                                  share * (f.z - p.z) - back * b.z, 0);
-    g.before[n] = w;
+    g.after[n] = w;
     along += double(w.x) * v.x + double(w.y) * v.y + double(w.z) * v.z;
   }
   along = joined_by_block(along);
@@ -114,15 +123,17 @@ __global__ void __launch_bounds__(block) multiply(const __grid_constant__ Lanczo
 // Takes away the part along `now`.
 __global__ void __launch_bounds__(block) orthogonalise(const __grid_constant__ LanczosIteration g)
 {
+  let_next_kernel_start();
+  wait_for_kernel_before();
   const double squared_length = joined_by_block(g.size[threadIdx.x]).x;
   const auto part = static_cast<float>(joined_by_block(g.along[threadIdx.x]) / squared_length);
   double2 size{ 0, 0 };
   for (std::uint32_t n = blockIdx.x * block + threadIdx.x; n < g.nodes; n += gridDim.x * block)
   {
     const float4 v = g.now[n];
-    float4 w = g.before[n];
+    float4 w = g.after[n];
     w = make_float4(w.x - part * v.x, w.y - part * v.y, w.z - part * v.z, 0);
-    g.before[n] = w;
+    g.after[n] = w;
     const double2 own{ double(w.x) * w.x + double(w.y) * w.y + double(w.z) * w.z,
                        double(root_of(g, n)) * fmax(fabs(w.x), fmax(fabs(w.y), fabs(w.z))) };
     size = joined(size, own);
@@ -183,19 +194,22 @@ cudaError_t launch_set_inverse_masses(const InverseMass* masses, std::uint32_t c
 
 cudaError_t launch_displace(const LanczosIteration& iteration, cudaStream_t stream)
 {
-  cuda::displace<<<lanczos_blocks, cuda::block, 0, stream>>>(iteration);
-  if (iteration.masters > 0)
-    cuda::move_followers<<<cuda::blocks_of_masters(iteration), cuda::block, 0, stream>>>(iteration);
-  return cudaGetLastError();
+  const cudaError_t status = cuda::launch_after(cuda::displace, lanczos_blocks, cuda::block, stream, iteration);
+  if (status != cudaSuccess || iteration.masters == 0)
+    return status;
+  return cuda::launch_after(cuda::move_followers, cuda::blocks_of_masters(iteration), cuda::block, stream, iteration);
 }
 
 cudaError_t launch_lanczos_product(const LanczosIteration& iteration, cudaStream_t stream)
 {
+  cudaError_t status = cudaSuccess;
   if (iteration.masters > 0)
-    cuda::add_forces_of_followers<<<cuda::blocks_of_masters(iteration), cuda::block, 0, stream>>>(iteration);
-  cuda::multiply<<<lanczos_blocks, cuda::block, 0, stream>>>(iteration);
-  cuda::orthogonalise<<<lanczos_blocks, cuda::block, 0, stream>>>(iteration);
-  return cudaGetLastError();
+    status = cuda::launch_after(cuda::add_forces_of_followers, cuda::blocks_of_masters(iteration), cuda::block, stream,
+                                iteration);
+  for (const auto kernel : { cuda::multiply, cuda::orthogonalise })
+    if (status == cudaSuccess)
+      status = cuda::launch_after(kernel, lanczos_blocks, cuda::block, stream, iteration);
+  return status;
 }
 
 }  // namespace frontalis

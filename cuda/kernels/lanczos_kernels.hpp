@@ -29,18 +29,20 @@ struct LanczosIteration
   const float4* u;
   const float4* present;  ///< forces at u
   float4* forces;         ///< forces at `moved`; those of followers are added to their masters
-  float4 *now, *before, *moved;
+  const float4 *now, *before;
+  float4* after;  ///< may be `before`
+  float4* moved;
   double amplitude;            ///< largest displacement of a node [m]
   const double2* size_before;  ///< sums of the vector before; null in the first iteration
   const double2* size;         ///< sums of `now`
-  double2* size_next;          ///< receives those of the vector that replaces `before`
+  double2* size_next;          ///< receives those of `after`
   double* along;               ///< receives sums of the products of `now` with its image
 };
 
 /// moved = u + displacements along `now`. Held nodes do not move.
 cudaError_t launch_displace(const LanczosIteration& iteration, cudaStream_t stream);
 
-/// Replaces `before` by the image of `now`, found from the forces, without its parts along both vectors.
+/// after = the image of `now`, found from the forces, without its parts along `now` and `before`.
 cudaError_t launch_lanczos_product(const LanczosIteration& iteration, cudaStream_t stream);
 
 /// A mode that a search has found: the sum of its vectors times components. Vectors may have any length.

@@ -8,7 +8,7 @@ SlideKernels<float> slide_kernels_avx2();
 ShellKernels<float> shell_kernels_avx2();
 TouchKernels<float> touch_kernels_avx2();
 void point_kernel_avx2(PointBlock<float>&, const float* const[3], const PosedBody<float>*, std::uint32_t,
-                         PointPlaces<float>&);
+                       PointPlaces<float>&);
 void attach_kernel_avx2(const AttachArguments<float>&, std::int32_t, std::int32_t);
 
 CpuKernelChoice cpu_kernel_avx2(const char* name)

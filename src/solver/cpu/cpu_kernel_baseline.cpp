@@ -8,7 +8,7 @@ SlideKernels<float> slide_kernels_baseline();
 ShellKernels<float> shell_kernels_baseline();
 TouchKernels<float> touch_kernels_baseline();
 void point_kernel_baseline(PointBlock<float>&, const float* const[3], const PosedBody<float>*, std::uint32_t,
-                         PointPlaces<float>&);
+                           PointPlaces<float>&);
 void attach_kernel_baseline(const AttachArguments<float>&, std::int32_t, std::int32_t);
 
 CpuKernelChoice cpu_kernel_baseline(const char* name)
