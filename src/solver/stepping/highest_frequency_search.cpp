@@ -147,11 +147,12 @@ HighestFrequencySearch<Real>::HighestFrequencySearch(const Model& model, const D
       along_(size_.size()),
       keeps_vectors_(model.mass_scaling.in_motion > 0)
 {
+  vectors_.reserve(most_lanczos_iterations);
   root_.resize(model.nodes.size());
   masses_changed(discretisation);
   std::stable_sort(followers_.begin(), followers_.end(),
                    [](const auto& a, const auto& b) { return a.master < b.master; });
-  for (auto* vector : { &start_, &now_, &before_, &moved_, &present_ })
+  for (auto* vector : { &start_, &moved_, &present_ })
     for (auto& component : *vector)
       component.assign(entries, 0);
   const auto mode = random_mode(root_.size());
@@ -164,7 +165,7 @@ template <class Real>
 void HighestFrequencySearch<Real>::list_arrays(ArrayList& list) const
 {
   const std::string what = "search for the highest frequency";
-  for (const auto* vector : { &start_, &now_, &before_, &moved_, &present_ })
+  for (const auto* vector : { &start_, &moved_, &present_ })
     for (const auto& component : *vector)
       list.add(what, component);
   list.add(what, root_);
@@ -185,24 +186,33 @@ void HighestFrequencySearch<Real>::masses_changed(const Discretisation& discreti
 }
 
 template <class Real>
-std::vector<FoundMode> HighestFrequencySearch<Real>::modes_above(double frequency_squared) const
+std::vector<FoundMode> HighestFrequencySearch<Real>::modes_above(double frequency_squared)
 {
+  constexpr std::size_t block = 512;  // of nodes, so that their sums stay in the cache
   std::vector<FoundMode> modes;
   for (const LanczosMatrix::Eigenpair& pair : matrix_.eigenpairs_above(frequency_squared))
   {
     FoundMode& mode = modes.emplace_back(FoundMode{ pair.value, {} });
-    for (std::size_t n = 0; n < root_.size(); ++n)
+    for (std::size_t first = 0; first < root_.size(); first += block)
     {
-      Real share = 0;
+      const std::size_t count = std::min(block, root_.size() - first);
+      Real share[block] = {};
       for (std::size_t axis = 0; axis < 3; ++axis)
       {
-        Real component = 0;
+        Real sum[block] = {};
         for (std::size_t i = 0; i < pair.vector.size(); ++i)
-          component += static_cast<Real>(pair.vector[i]) * vectors_[i][axis][n];
-        share += component * component;
+        {
+          const auto component = static_cast<Real>(pair.vector[i] / lengths_[i]);
+          const Real* const along = vector(static_cast<int>(i))[axis].data() + first;
+          for (std::size_t n = 0; n < count; ++n)
+            sum[n] += component * along[n];
+        }
+        for (std::size_t n = 0; n < count; ++n)
+          share[n] += sum[n] * sum[n];
       }
-      if (share > Real(least_mode_share))
-        mode.shares.push_back({ static_cast<std::int32_t>(n), static_cast<float>(share) });
+      for (std::size_t n = 0; n < count; ++n)
+        if (share[n] > Real(least_mode_share))
+          mode.shares.push_back({ static_cast<std::int32_t>(first + n), static_cast<float>(share[n]) });
     }
   }
   return modes;
@@ -237,14 +247,14 @@ void HighestFrequencySearch<Real>::displace(const Nodes& nodes, const Components
   }
 }
 
-// Replaces `before` by an image, less `back` times `before`. `factor`: from forces to the image.
+// Finds an image, less `back` times the vector `before`. `factor`: from forces to the image.
 template <class Real>
 void HighestFrequencySearch<Real>::find_image(const Nodes& nodes, const Components& forces, Real factor, Real back,
-                                              Components& before) const
+                                              const Components& before, Components& after) const
 {
   for (std::size_t axis = 0; axis < 3; ++axis)
     for (auto n = nodes.first; n < nodes.end; ++n)
-      before[axis][n] = factor * root_[n] * (forces[axis][n] - present_[axis][n]) - back * before[axis][n];
+      after[axis][n] = factor * root_[n] * (forces[axis][n] - present_[axis][n]) - back * before[axis][n];
 }
 
 // Adds the forces on followers to the image at their masters.
@@ -270,15 +280,16 @@ double HighestFrequencySearch<Real>::product(const Nodes& nodes, const Component
   return sum_of(sum);
 }
 
-// Subtracts `share` of the vector `now` from `before`, and finds the length and the largest displacement of the result.
+// Subtracts `share` of the vector `now` from another one, and finds the length and the largest displacement of the
+// result.
 template <class Real>
-void HighestFrequencySearch<Real>::subtract(const Nodes& nodes, Real share, const Components& now, Components& before,
+void HighestFrequencySearch<Real>::subtract(const Nodes& nodes, Real share, const Components& now, Components& from,
                                             Size& size) const
 {
   Real sum[lanes] = {}, most[lanes] = {};
   for (std::size_t axis = 0; axis < 3; ++axis)
     in_lanes(nodes.first, nodes.end,
-             [&, x = before[axis].data(), y = now[axis].data(), root = root_.data()](std::int32_t n, int lane)
+             [&, x = from[axis].data(), y = now[axis].data(), root = root_.data()](std::int32_t n, int lane)
              {
                x[n] -= share * y[n];
                sum[lane] += x[n] * x[n];
@@ -294,32 +305,26 @@ double HighestFrequencySearch<Real>::run(std::int32_t first, std::int32_t end, c
 {
   const Nodes own{ first, end };
   const std::size_t first_part = part_of(first), end_part = part_of(end);
-  Components *now = &now_, *before = &before_;
   forces.find(u);
   for (std::size_t axis = 0; axis < 3; ++axis)
-    for (auto n = own.first; n < own.end; ++n)
-    {
-      present_[axis][n] = forces.found[axis][n];
-      now_[axis][n] = start_[axis][n];
-      before_[axis][n] = 0;
-    }
+    std::copy(forces.found[axis].begin() + own.first, forces.found[axis].begin() + own.end,
+              present_[axis].begin() + own.first);
   for (auto part = first_part; part < end_part; ++part)
-    subtract(nodes(part), 0, *now, *now, size_[part]);
+    subtract(nodes(part), 0, start_, start_, size_[part]);
   if (first_part == 0)
-    make_room(0);
+    make_room(1);
   forces.barrier();
   Size of_now = total_size();
   LanczosMatrix matrix;
-  double length_before = 1;
+  std::vector<double> lengths;
   for (int iteration = 0; iteration < most_lanczos_iterations && !matrix.settled() && of_now.largest > 0; ++iteration)
   {
+    const Components &now = vector(iteration), &before = vector(std::max(iteration - 1, 0));
+    Components& after = vector(iteration + 1);
     const double length = std::sqrt(of_now.squared_length), scale = mode_amplitude(model_, iteration) / of_now.largest;
     const auto factor = static_cast<Real>(1 / (scale * length));
-    if (keeps_vectors_)
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        for (auto n = own.first; n < own.end; ++n)
-          vectors_[iteration][axis][n] = static_cast<Real>(1 / length) * (*now)[axis][n];
-    displace(own, u, static_cast<Real>(scale), *now);
+    const auto back = static_cast<Real>(iteration == 0 ? 0 : length / lengths.back());
+    displace(own, u, static_cast<Real>(scale), now);
     forces.barrier();
     forces.find(moved_);
     if (!followers_.empty())
@@ -327,32 +332,36 @@ double HighestFrequencySearch<Real>::run(std::int32_t first, std::int32_t end, c
     for (auto part = first_part; part < end_part; ++part)
     {
       const Nodes at = nodes(part);
-      find_image(at, forces.found, factor, static_cast<Real>(iteration == 0 ? 0 : length / length_before), *before);
-      add_followers(at, forces.found, factor, *before);
-      added_.add_product(at.first, at.end, root_, static_cast<Real>(1 / length), *now, *before);
-      along_[part] = product(at, *before, *now);
+      find_image(at, forces.found, factor, back, before, after);
+      add_followers(at, forces.found, factor, after);
+      added_.add_product(at.first, at.end, root_, static_cast<Real>(1 / length), now, after);
+      along_[part] = product(at, after, now);
     }
     forces.barrier();
     const double along = std::accumulate(along_.begin(), along_.end(), 0.0);
     for (auto part = first_part; part < end_part; ++part)
-      subtract(nodes(part), static_cast<Real>(along / of_now.squared_length), *now, *before, size_[part]);
+      subtract(nodes(part), static_cast<Real>(along / of_now.squared_length), now, after, size_[part]);
     if (first_part == 0)
-      make_room(iteration + 1);
+      make_room(iteration + 2);
     forces.barrier();
     of_now = total_size();
     matrix.add_row(along / length, std::sqrt(of_now.squared_length));
-    length_before = length;
-    std::swap(now, before);
+    lengths.push_back(length);
   }
   if (first_part == 0 && keeps_vectors_)
+  {
     matrix_ = matrix;
+    lengths_ = lengths;
+  }
   return matrix.largest_eigenvalue();
 }
 
+// The last iteration makes a vector, too.
 template <class Real>
-void HighestFrequencySearch<Real>::make_room(std::size_t iteration)
+void HighestFrequencySearch<Real>::make_room(int iteration)
 {
-  if (keeps_vectors_ && vectors_.size() <= iteration)
+  const auto wanted = static_cast<std::size_t>(keeps_vectors_ ? std::min(iteration, most_lanczos_iterations) : 2);
+  while (vectors_.size() < wanted)
     vectors_.push_back(start_);
 }
 

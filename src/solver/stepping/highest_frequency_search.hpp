@@ -79,7 +79,7 @@ public:
   /// calls this function with its nodes [first, end), and all receive the same number.
   double run(std::int32_t first, std::int32_t end, const Components& u, const Forces& forces);
   /// Value of StepBackend::modes_above(), of the latest run().
-  std::vector<FoundMode> modes_above(double frequency_squared) const;
+  std::vector<FoundMode> modes_above(double frequency_squared);
   /// Called after Discretisation::node_mass has changed.
   void masses_changed(const Discretisation& discretisation);
   void list_arrays(ArrayList& list) const;
@@ -96,24 +96,31 @@ private:
   Nodes nodes(std::size_t part) const { return { first_node_[part], first_node_[part + 1] }; }
   std::size_t part_of(std::int32_t node) const;
   Size total_size() const;
-  void make_room(std::size_t iteration);
+  /// The vector of an iteration. If they are not kept, those of every other iteration share memory.
+  Components& vector(int iteration)
+  {
+    return iteration == 0 ? start_ : vectors_[keeps_vectors_ ? iteration - 1 : (iteration - 1) % 2];
+  }
+  void make_room(int iteration);
   void displace(const Nodes& nodes, const Components& u, Real scale, const Components& now);
-  void find_image(const Nodes& nodes, const Components& forces, Real factor, Real back, Components& before) const;
+  void find_image(const Nodes& nodes, const Components& forces, Real factor, Real back, const Components& before,
+                  Components& after) const;
   void add_followers(const Nodes& nodes, const Components& forces, Real factor, Components& image) const;
   double product(const Nodes& nodes, const Components& a, const Components& b) const;
-  void subtract(const Nodes& nodes, Real share, const Components& now, Components& before, Size& size) const;
+  void subtract(const Nodes& nodes, Real share, const Components& now, Components& from, Size& size) const;
 
   const Model& model_;
   std::vector<std::int32_t> first_node_;  // of each part
   std::vector<Real> root_;
   std::vector<Discretisation::Follower> followers_;  // in the order of their masters
   AddedStiffnessMatrix added_;
-  Components start_, now_, before_, moved_, present_;
-  std::vector<Size> size_;     // of each part of a vector
-  std::vector<double> along_;  // products of the parts of a vector with those of its image
+  Components start_, moved_, present_;
+  std::vector<Components> vectors_;  // of the iterations after the first; they stay where they are
+  std::vector<Size> size_;           // of each part of a vector
+  std::vector<double> along_;        // products of the parts of a vector with those of its image
   // for modes_above(), in models with MassScalingSettings::in_motion
   bool keeps_vectors_;
-  std::vector<Components> vectors_;  // of the iterations, of length 1
+  std::vector<double> lengths_;  // of the vectors
   LanczosMatrix matrix_;
 };
 
