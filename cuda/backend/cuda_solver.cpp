@@ -116,6 +116,7 @@ void CudaSolver::list_arrays(ArrayList& list)
     list_state(list, Effect::elasticity, "motion", v);
   list.add(Effect::elasticity, "skin", skin_.bytes() + landmarks_.bytes() + skin_output_.bytes());
   list.add(Effect::rigid_nodes, "still nodes", still_.bytes());
+  list.add(Effect::elasticity, "controls", activation_.bytes());
   for (const auto& slot : slots_)
     list.add(Effect::elasticity, "controls", slot.controls.bytes());
   // The frequency bound of the latest plan limits the steps of later plans and thus belongs to the state.

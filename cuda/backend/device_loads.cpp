@@ -120,7 +120,7 @@ void DeviceLoads::add_pressures(const std::vector<std::uint32_t>& device_node, P
   pressure_ = DeviceArray<double>(pressure);
 }
 
-// Those of pressures are found in each step.
+// Those of pressures are found by update().
 std::vector<double> DeviceLoads::surface_forces() const
 {
   std::vector<double> forces(traction_.size() + 3 * pressure_.size(), 0);

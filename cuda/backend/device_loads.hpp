@@ -38,7 +38,7 @@ public:
   void reset() override {}
   bool idle() const { return !(runs_ && surface_force_.size() > 0) && !(relieves_ && relief_.size() > 0); }
   void list_arrays(ArrayList& list) override;
-  /// Finds the forces on nodes at the start of a launch of steps, if there are follower pressures.
+  /// Finds the forces on nodes in every steps_per_pressure-th step of the plan, if there are follower pressures.
   void update(StepArguments& g, int step, const float4* u, cudaStream_t stream);
 
 private:

@@ -1,6 +1,7 @@
 #include "cuda/backend/device_model.hpp"
 
 #include "frontalis/solver/backend.hpp"
+#include "solver/stepping/highest_frequency_search.hpp"
 #include "solver/stepping/step_bound.hpp"
 
 #include <fmt/format.h>
@@ -52,7 +53,8 @@ std::vector<std::uint32_t> added_voxels(const Model& model, const Discretisation
 void expect_room(const Model& model, const Discretisation& discretisation, const VoxelCut& cut)
 {
   const bool searches = model.time_step_estimate == TimeStepEstimate::assembled;
-  const std::size_t node_bytes = (searches ? 8 : 2) * sizeof(float4) + 3 * sizeof(float);
+  const std::size_t vectors = model.mass_scaling.in_motion > 0 ? most_lanczos_iterations : 2;
+  const std::size_t node_bytes = (2 + (searches ? 4 + vectors : 0)) * sizeof(float4) + 3 * sizeof(float);
   std::size_t wanted =
       (model.nodes.size() + 1) * node_bytes + model.fibre_muscle.size() * (sizeof(float4) + sizeof(std::uint32_t));
   if (cut.patches)

@@ -8,7 +8,6 @@
 #include "solver/stepping/discretisation.hpp"
 #include "cuda/kernels/step_kernel.hpp"
 
-#include <array>
 #include <memory>
 #include <vector>
 

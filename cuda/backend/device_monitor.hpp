@@ -17,7 +17,11 @@ public:
 
   /// Returns energies and worst voxel at displacements `u` and velocities g.v. Waits for the stream.
   Monitor read(const StepArguments& g, const float4* u, cudaStream_t stream);
-  std::size_t bytes() const { return voxels_.bytes() + parts_.bytes(); }  ///< device memory
+  /// Bytes of device memory.
+  std::size_t bytes() const
+  {
+    return voxels_.bytes() + parts_.bytes() + stiffness_.bytes() + node_stiffness_.bytes() + stiffest_.bytes();
+  }
 
 private:
   DeviceArray<MonitorVoxel> voxels_;

@@ -194,8 +194,10 @@ void CudaSolver::masses_changed(const std::vector<std::int32_t>& nodes)
   if (changes.size() < masses.size())
     changes = DeviceArray<InverseMass>(2 * masses.size());
   changes.upload(masses.data(), masses.size());
+  // Masses for the bound that differ from those of nodes do not change.
+  float* const for_bound = discretisation_.bound_mass.empty() ? device_.inverse_bound_masses() : nullptr;
   require(launch_set_inverse_masses(changes.data(), static_cast<std::uint32_t>(masses.size()), u_[0].data(),
-                                    u_[1].data(), device_.inverse_bound_masses(), search_->mobility.data(), stream_),
+                                    u_[1].data(), for_bound, search_->mobility.data(), stream_),
           "setting masses");
   device_.masses_changed(masses);
 }

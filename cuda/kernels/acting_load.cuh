@@ -18,5 +18,21 @@ __device__ __forceinline__ double acting_share(const StepArguments& g, std::int3
   return activation.x + fraction_passed(g, step) * activation.y;
 }
 
+/// Force of surface loads on a loaded node in a step of the plan [N].
+__device__ __forceinline__ void surface_load(const StepArguments& g, std::int32_t node, std::int32_t step,
+                                             double (&force)[3])
+{
+  for (int i = 0; i < 3; ++i)
+    force[i] = g.load_force == nullptr ? 0 : g.load_force[3 * node + i];
+  const bool adds = g.load_begin != nullptr && g.load_force == nullptr;
+  for (auto l = adds ? g.load_begin[node] : 0; adds && l < g.load_begin[node + 1]; ++l)
+  {
+    const LoadPart part = g.load_parts[l];
+    const double share = part.weight * acting_share(g, part.load, step);
+    for (int i = 0; i < 3; ++i)
+      force[i] += share * g.surface_force[3 * part.force + i];
+  }
+}
+
 }  // namespace cuda
 }  // namespace frontalis

@@ -84,7 +84,7 @@ struct ContactArguments
   /// In strips: number of blocks of find_added_stress() that find the forces on points; 0: a kernel of their own does.
   std::uint32_t blocks_beside;
 
-  /// Whether the forces are those of points that all touch and stick, as in ContactStiffness::add_forces().
+  /// Whether the forces are those of points that all touch and stick, as in ContactStiffness.
   bool spring;
 };
 

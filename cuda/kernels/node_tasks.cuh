@@ -21,17 +21,8 @@ __device__ __forceinline__ void keep_velocity(float* const to[3], std::uint32_t 
 static __device__ __noinline__ void add_load(const StepArguments& g, std::int32_t index, const NodeStep& at,
                                              NodeState& n)
 {
-  double force[3] = { 0, 0, 0 };
-  for (int i = 0; i < 3 && g.load_force != nullptr; ++i)
-    force[i] = g.load_force[3 * index + i];
-  const bool adds = g.load_begin != nullptr && g.load_force == nullptr;
-  for (auto l = adds ? g.load_begin[index] : 0; adds && l < g.load_begin[index + 1]; ++l)
-  {
-    const LoadPart part = g.load_parts[l];
-    const double share = part.weight * acting_share(g, part.load, at.step);
-    for (int i = 0; i < 3; ++i)
-      force[i] += share * g.surface_force[3 * part.force + i];
-  }
+  double force[3];
+  surface_load(g, index, at.step, force);
   for (int i = 0; i < 3; ++i)
   {
     if (g.load_relief != nullptr)

@@ -29,7 +29,7 @@ struct ShellTriangles
 {
   const float4* words;
   std::uint32_t count;
-  bool spring;  ///< whether the forces are those of ShellStiffness::add_forces()
+  bool spring;  ///< whether the forces are those of ShellStiffness
 };
 
 /// Shells in patches. Pointers are to device memory.

@@ -16,7 +16,7 @@ cudaError_t launch_touch_search(const TissueContactArguments& contact, const flo
 /// `dt`: length of the step [s].
 cudaError_t launch_touch(const TissueContactArguments& contact, const float4* u, double dt, cudaStream_t stream);
 
-/// Stores in contact.sums the forces of vertices that all touch and stick, as in ContactStiffness::add_forces().
+/// Stores in contact.sums the forces of vertices that all touch and stick, as in ContactStiffness.
 cudaError_t launch_touch_springs(const TissueContactArguments& contact, const float4* u, cudaStream_t stream);
 
 /// Passes the forces of contact.sums on to nodes, as launch_push_nodes() does.

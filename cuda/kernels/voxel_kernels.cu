@@ -158,14 +158,10 @@ __global__ void __launch_bounds__(block)
   if (l >= account.loaded_nodes || g.load_begin == nullptr)
     return;
   const std::uint32_t n = account.loaded[l];
-  double work = 0;
-  for (auto p = g.load_begin[l]; p < g.load_begin[l + 1]; ++p)
-  {
-    const LoadPart part = g.load_parts[p];
-    const double share = part.weight * acting_share(g, part.load, step);
-    for (int i = 0; i < 3; ++i)
-      work += share * g.surface_force[3 * part.force + i] * 0.5 * (double(g.velocity_before[i][n]) + double(g.v[i][n]));
-  }
+  double force[3], work = 0;
+  surface_load(g, static_cast<std::int32_t>(l), step, force);
+  for (int i = 0; i < 3; ++i)
+    work += force[i] * 0.5 * (double(g.velocity_before[i][n]) + double(g.v[i][n]));
   account.load[l] += g.kick * work;
 }
 

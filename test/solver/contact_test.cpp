@@ -77,6 +77,22 @@ TEST_P(BodiesTouch, forces_and_friction_are_those_of_the_reference)
 }
 
 // The solver skips points that are far from a body, but must notice a body that approaches at a high speed.
+TEST_P(BodiesTouch, a_body_without_points_does_nothing)
+{
+  Model model = block_and_finger(0);
+  model.time_step_estimate = TimeStepEstimate::assembled;
+  Contact& shown = model.contacts[0];
+  shown.points.clear();
+  shown.area.clear();
+  shown.binding = {};
+  Model without = model;
+  without.contacts.clear();
+  const auto solver = make(model), other = make(without);
+  for (Solver* const one : { solver.get(), other.get() })
+    one->advance(1e-3, one->controls());
+  EXPECT_EQ(displacements(*solver), displacements(*other));
+}
+
 TEST_P(BodiesTouch, a_body_that_comes_from_far_is_met)
 {
   const auto near = make(block_and_finger(0)), far = make(block_and_finger(0));

@@ -59,7 +59,7 @@ void attach_to_floor(Model& m)
   m.tissue_centre.assign(m.voxels.size(), { { 0.2F, -0.1F, 0.5F } });
 }
 
-// Makes the load constant, so that on a GPU one launch makes many steps.
+// Makes the load constant, so that on a GPU one launch makes all steps of a plan.
 void steady(Model& m)
 {
   for (Load& load : m.loads)

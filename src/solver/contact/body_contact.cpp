@@ -146,6 +146,13 @@ std::vector<BodyState> BodyContact<Real>::next(const ConstraintStep& step) const
   return now;
 }
 
+// The value of a field divided by the steepest slope is a lower bound of the distance from the body.
+template <class Real>
+double BodyContact<Real>::due_after(std::size_t p, double way, double distance) const
+{
+  return way + (distance - distance_error) / (physics::steepest_field * spread_[p]);
+}
+
 template <class Real>
 void BodyContact<Real>::find_force(std::size_t p, const Real* const u[3], const BodyState& body, double response,
                                    const PointPlaces<Real>* places)
@@ -157,8 +164,7 @@ void BodyContact<Real>::find_force(std::size_t p, const Real* const u[3], const 
   const physics::Pose pose = pose_of(body.pose);
   Vector x{};
   physics::FieldValue<double> value{};
-  // Displacements from the anchors of friction need double precision.
-  bool sampled = places != nullptr && contact.friction == 0 && blocks_.read(*places, p % chunk_size, field, value, x);
+  bool sampled = places != nullptr && blocks_.read(*places, p % chunk_size, field, value, x);
   if (!sampled)
   {
     x = pose.inwards(place(point, u));
@@ -181,11 +187,9 @@ void BodyContact<Real>::find_force(std::size_t p, const Real* const u[3], const 
   if (contact.friction > 0 && grip.normal > stiffness * physics::forgotten_depth)
     return;
   grip.normal = 0;
-  // The value divided by the steepest slope is a lower bound of the distance from the body.
   if (touches_[p] == Touching::no)
-    due_[p] = body.way + (sampled ? (value.value - distance_error) / physics::steepest_field
-                                  : physics::distance_without_samples(field, contact.reach, x)) /
-                             spread_[p];
+    due_[p] = sampled ? due_after(p, body.way, value.value)
+                      : body.way + physics::distance_without_samples(field, contact.reach, x) / spread_[p];
 }
 
 template <class Real>
@@ -207,17 +211,19 @@ void BodyContact<Real>::before_step(const NodeShare& share, const Real* const u[
     chunk = { std::numeric_limits<double>::max(), 0 };
     const std::size_t first = c * chunk_size, last = std::min(first + chunk_size, points_.size());
     // A point that has touched has been due ever since.
-    std::uint32_t wanted = 0, away_before = 0;
+    std::uint32_t wanted = 0, away_before = 0, in_lanes = 0;
     for (std::size_t p = first; p < last; ++p)
       if (!(due_[p] > now.front().way))
       {
-        wanted |= 1U << (p - first);
-        away_before |= due_[p] > 0 ? 1U << (p - first) : 0;
+        const std::uint32_t bit = 1U << (p - first);
+        wanted |= bit;
+        away_before |= due_[p] > 0 ? bit : 0;
+        in_lanes |= due_[p] > 0 || touches_in_lanes(points_[p].body) ? bit : 0;
       }
     PointPlaces<Real> places;
-    const bool found = blocks_.present() && wanted != 0;
+    const bool found = blocks_.present() && in_lanes != 0;
     if (found)
-      blocks_.find(c, u, bodies, wanted, places);
+      blocks_.find(c, u, bodies, in_lanes, places);
     for (std::size_t p = first; p < last; ++p)
     {
       if ((wanted >> (p - first) & 1) == 0)
@@ -226,11 +232,12 @@ void BodyContact<Real>::before_step(const NodeShare& share, const Real* const u[
         continue;
       }
       const bool was_away = found && (away_before >> (p - first) & 1) != 0;
-      const double away = was_away ? double(places.distance[p - first]) - distance_error : 0;
-      if (away > 0)
-        due_[p] = now.front().way + away / (physics::steepest_field * spread_[p]);
+      const double distance = was_away ? double(places.distance[p - first]) : 0;
+      if (distance > distance_error)
+        due_[p] = due_after(p, now.front().way, distance);
       else
-        find_force(p, u, now[points_[p].body], response, found ? &places : nullptr);
+        find_force(p, u, now[points_[p].body], response,
+                   found && touches_in_lanes(points_[p].body) ? &places : nullptr);
       chunk.due = std::min(chunk.due, due_[p]);
       chunk.touches |= touches_[p] != Touching::no ? 1 : 0;
     }

@@ -27,7 +27,7 @@ template <class Real>
 class BodyContact : public NodePart<Real>
 {
 public:
-  /// `kernel`: finds which points are away from all bodies, sixteen at a time; null: each point is evaluated alone.
+  /// `kernel`: finds the places of sixteen points at a time; null: each point is evaluated alone.
   BodyContact(const Model& model, const Discretisation& discretisation, PointKernel<Real> kernel = nullptr);
 
   void run(EffectSet running) override;
@@ -125,6 +125,14 @@ private:
   Energy energy_now(const Real* const u[3], const std::vector<RigidTransform>& bones,
                     std::vector<std::array<double, 3>>& forces) const;
   std::vector<BodyState> next(const ConstraintStep& step) const;
+  /// Whether the kernel's places suffice for the forces of a body. Displacements from the anchors of friction need
+  /// double precision.
+  bool touches_in_lanes(std::int32_t body) const
+  {
+    return model_.contacts[body].friction == 0 && fields_[body].radius == 0;
+  }
+  /// Value of BodyState::way up to which a point at a distance [m] from its body need not be evaluated again.
+  double due_after(std::size_t p, double way, double distance) const;
   /// Finds the force on a point. `places`: those of its chunk, or null.
   void find_force(std::size_t p, const Real* const u[3], const BodyState& body, double response,
                   const PointPlaces<Real>* places);

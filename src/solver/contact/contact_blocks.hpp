@@ -11,8 +11,8 @@
 namespace frontalis
 {
 
-/// Points of contact in blocks, for a kernel that finds which of them are away from their bodies. Without a kernel
-/// there are no blocks.
+/// Points of contact in blocks, for a kernel that finds their places beside their bodies. Without a kernel there are no
+/// blocks.
 template <class Real>
 class ContactBlocks
 {

@@ -156,6 +156,8 @@ void TissueContact<Real>::list_arrays(ArrayList& list)
   list.add(effect, "bound nodes", bound_nodes_);
   list.add(effect, "forces", forces_);
   list.add(effect, "forces", node_forces_);
+  for (const auto& summed : summed_)
+    list.add(effect, "forces", summed);
   for (const auto& sums : sums_)
     list.add(effect, "forces", sums);
   if (surface_.vertices.empty())
@@ -167,6 +169,7 @@ void TissueContact<Real>::list_arrays(ArrayList& list)
   list.add_state(effect, "pairs", found_);
   list.add_state(effect, "places", searched_);
   list.add_state(effect, "distances", due_);
+  list.add_state(effect, "forces", touches_);
   list.add_state(effect, "distances", clock_);
   list.add_state(effect, "distances", node_way_);
   list.add_state(effect, "sums", lost_);

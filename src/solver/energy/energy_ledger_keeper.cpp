@@ -80,11 +80,23 @@ void EnergyLedgerKeeper::open(double time, double dt)
 
 void EnergyLedgerKeeper::masses_changed(const std::vector<AddedMass>& changed)
 {
-  NodalVectors v;
+  NodalVectors u, v;
+  backend_.get(NodalField::displacements, u);
   backend_.get(NodalField::velocities, v);
   for (const AddedMass& mass : changed)
-    for (const double speed : v[mass.node])
-      ledger_.initial += 0.5 * (mass.now - mass.before) * speed * speed;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+      const double more = mass.now - mass.before, speed = v[mass.node][axis];
+      ledger_.initial += 0.5 * more * speed * speed - more * pull_on(mass.node, axis) * u[mass.node][axis];
+    }
+}
+
+double EnergyLedgerKeeper::pull_on(std::size_t node, std::size_t axis) const
+{
+  if (!conditions_.running.has(Effect::gravity))
+    return 0;
+  return model_.gravity[axis] *
+         (discretisation_.weight_share.empty() ? 1.0 : double(discretisation_.weight_share[node]));
 }
 
 EnergyLedger EnergyLedgerKeeper::balance(double time, double dt)
@@ -139,22 +151,20 @@ void EnergyLedgerKeeper::add_latest_half_step(double time, double dt)
   backend_.add_energies(false, touching, ledger_);
   const NodalVectors external = external_forces(time, u);
   const physics::Kick<double> kick = conditions_.kick<double>(dt);
-  const bool weighs = conditions_.running.has(Effect::gravity);
   double &kinetic = ledger_["kinetic"], &gravity = ledger_["gravity"], &load = ledger_["load"],
          &constraint = ledger_["constraint"];
   for (std::size_t n = 0; n < u.size(); ++n)
   {
     const double mass = discretisation_.node_mass[n];
-    const double weight = mass * (discretisation_.weight_share.empty() ? 1.0 : double(discretisation_.weight_share[n]));
     for (int axis = 0; axis < 3; ++axis)
     {
       const double next = physics::kicked(kick, axis, v[n][axis], kick.gain / mass,
                                           internal[n][axis] - external[n][axis] - touching[n][axis]);
       kinetic += 0.5 * mass * v[n][axis] * (driven_[n][axis] ? v[n][axis] : next);
-      const double pull = weighs ? model_.gravity[axis] : 0;
-      gravity += weight * pull * u[n][axis];
+      const double weight = mass * pull_on(n, axis);
+      gravity += weight * u[n][axis];
       // Force of surface loads alone, without the correction for mass scaling.
-      const double force = external[n][axis] - weight * pull + mass * conditions_.gravity[axis];
+      const double force = external[n][axis] - weight + mass * conditions_.gravity[axis];
       load += 0.5 * dt * force * v[n][axis];
       constraint += driven_[n][axis] ? 0.5 * mass * v[n][axis] * (v[n][axis] - next) : 0;
     }

@@ -32,6 +32,8 @@ public:
   void masses_changed(const std::vector<AddedMass>& changed);
 
 private:
+  /// Acceleration [m/s2] with which gravity acts on a node's mass.
+  double pull_on(std::size_t node, std::size_t axis) const;
   NodalVectors external_forces(double time, const NodalVectors& u);
   void add_latest_half_step(double time, double dt);
 

@@ -4,7 +4,6 @@
 #include "solver/contact/gliding_nodes.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace frontalis
 {

@@ -305,13 +305,15 @@ double HighestFrequencySearch<Real>::run(std::int32_t first, std::int32_t end, c
 {
   const Nodes own{ first, end };
   const std::size_t first_part = part_of(first), end_part = part_of(end);
+  // A thread without nodes may begin at the first part, too.
+  const bool leads = first_part == 0 && end_part > 0;
   forces.find(u);
   for (std::size_t axis = 0; axis < 3; ++axis)
     std::copy(forces.found[axis].begin() + own.first, forces.found[axis].begin() + own.end,
               present_[axis].begin() + own.first);
   for (auto part = first_part; part < end_part; ++part)
     subtract(nodes(part), 0, start_, start_, size_[part]);
-  if (first_part == 0)
+  if (leads)
     make_room(1);
   forces.barrier();
   Size of_now = total_size();
@@ -341,14 +343,14 @@ double HighestFrequencySearch<Real>::run(std::int32_t first, std::int32_t end, c
     const double along = std::accumulate(along_.begin(), along_.end(), 0.0);
     for (auto part = first_part; part < end_part; ++part)
       subtract(nodes(part), static_cast<Real>(along / of_now.squared_length), now, after, size_[part]);
-    if (first_part == 0)
+    if (leads)
       make_room(iteration + 2);
     forces.barrier();
     of_now = total_size();
     matrix.add_row(along / length, std::sqrt(of_now.squared_length));
     lengths.push_back(length);
   }
-  if (first_part == 0 && keeps_vectors_)
+  if (leads && keeps_vectors_)
   {
     matrix_ = matrix;
     lengths_ = lengths;
