@@ -210,29 +210,23 @@ void BodyContact<Real>::before_step(const NodeShare& share, const Real* const u[
       continue;
     chunk = { std::numeric_limits<double>::max(), 0 };
     const std::size_t first = c * chunk_size, last = std::min(first + chunk_size, points_.size());
-    // A point that has touched has been due ever since.
-    std::uint32_t wanted = 0, away_before = 0, in_lanes = 0;
+    // A point that has touched has been due ever since, with a value of 0.
+    std::uint32_t in_lanes = 0;
     for (std::size_t p = first; p < last; ++p)
-      if (!(due_[p] > now.front().way))
-      {
-        const std::uint32_t bit = 1U << (p - first);
-        wanted |= bit;
-        away_before |= due_[p] > 0 ? bit : 0;
-        in_lanes |= due_[p] > 0 || touches_in_lanes(points_[p].body) ? bit : 0;
-      }
+      if (!(due_[p] > now.front().way) && (due_[p] > 0 || touches_in_lanes(points_[p].body)))
+        in_lanes |= 1U << (p - first);
     PointPlaces<Real> places;
     const bool found = blocks_.present() && in_lanes != 0;
     if (found)
       blocks_.find(c, u, bodies, in_lanes, places);
     for (std::size_t p = first; p < last; ++p)
     {
-      if ((wanted >> (p - first) & 1) == 0)
+      if (due_[p] > now.front().way)
       {
         chunk.due = std::min(chunk.due, due_[p]);
         continue;
       }
-      const bool was_away = found && (away_before >> (p - first) & 1) != 0;
-      const double distance = was_away ? double(places.distance[p - first]) : 0;
+      const double distance = found && due_[p] > 0 ? double(places.distance[p - first]) : 0;
       if (distance > distance_error)
         due_[p] = due_after(p, now.front().way, distance);
       else
