@@ -230,9 +230,6 @@ std::uint32_t DeviceBodyContact::blocks_beside() const
 
 void DeviceBodyContact::find_pushes(const StepArguments& g, int step, cudaStream_t stream) const
 {
-  // Bodies that are only shown have no points.
-  if (point_.size() == 0)
-    return;
   PushedBodies pushed{
     pushed_.data(),   static_cast<std::uint32_t>(pushed_.size()), 0, g.contact.poses, nullptr, motions_.data(),
     reactions_.data()

@@ -32,8 +32,7 @@ public:
   void find_pushes(const StepArguments& g, int step, cudaStream_t stream) const override;
   void push(const StepArguments& g, float factor, float* const (&v)[3], cudaStream_t stream) const override
   {
-    if (point_.size() > 0)
-      bound_.push(g, factor, v, stream);
+    bound_.push(g, factor, v, stream);
   }
   void follow(const ConstraintStep& step) override;
   std::vector<Reaction> reactions() const override { return host_.reactions(); }

@@ -22,7 +22,7 @@ __global__ void __launch_bounds__(block) follow_masters(const __grid_constant__ 
 cudaError_t launch_attached(const StepArguments& arguments, cudaStream_t stream)
 {
   const std::uint32_t blocks = (arguments.attached.count * cuda::group_lanes + cuda::block - 1) / cuda::block;
-  return blocks > 0 ? cuda::launch_after(cuda::follow_masters, blocks, cuda::block, stream, arguments) : cudaSuccess;
+  return cuda::launch_after(cuda::follow_masters, blocks, cuda::block, stream, arguments);
 }
 
 }  // namespace frontalis

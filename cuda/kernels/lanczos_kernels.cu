@@ -195,17 +195,15 @@ cudaError_t launch_set_inverse_masses(const InverseMass* masses, std::uint32_t c
 cudaError_t launch_displace(const LanczosIteration& iteration, cudaStream_t stream)
 {
   const cudaError_t status = cuda::launch_after(cuda::displace, lanczos_blocks, cuda::block, stream, iteration);
-  if (status != cudaSuccess || iteration.masters == 0)
+  if (status != cudaSuccess)
     return status;
   return cuda::launch_after(cuda::move_followers, cuda::blocks_of_masters(iteration), cuda::block, stream, iteration);
 }
 
 cudaError_t launch_lanczos_product(const LanczosIteration& iteration, cudaStream_t stream)
 {
-  cudaError_t status = cudaSuccess;
-  if (iteration.masters > 0)
-    status = cuda::launch_after(cuda::add_forces_of_followers, cuda::blocks_of_masters(iteration), cuda::block, stream,
-                                iteration);
+  cudaError_t status = cuda::launch_after(cuda::add_forces_of_followers, cuda::blocks_of_masters(iteration),
+                                          cuda::block, stream, iteration);
   for (const auto kernel : { cuda::multiply, cuda::orthogonalise })
     if (status == cudaSuccess)
       status = cuda::launch_after(kernel, lanczos_blocks, cuda::block, stream, iteration);

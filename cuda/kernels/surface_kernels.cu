@@ -154,8 +154,6 @@ cudaError_t launch_normals(const BoundSurface& surface, const float* positions, 
 cudaError_t launch_pressure(const BoundSurface& surface, const double* pressure, const float4* u, double* forces,
                             cudaStream_t stream)
 {
-  if (surface.triangle_count == 0)
-    return cudaSuccess;
   return cuda::launch_after(cuda::pressure_forces, cuda::blocks(surface.triangle_count), cuda::block, stream, surface,
                             pressure, u, forces);
 }
@@ -164,8 +162,6 @@ cudaError_t launch_node_loads(const StepArguments& arguments, std::uint32_t coun
                               cudaStream_t stream)
 {
   constexpr std::uint32_t warp = 32;
-  if (count == 0)
-    return cudaSuccess;
   return cuda::launch_after(cuda::node_loads, cuda::blocks(warp * count), cuda::block, stream, arguments, count, step,
                             forces);
 }
