@@ -155,7 +155,7 @@ void add_restrictions(const Scene& scene, Content& content)
   }
   for (const SceneLoad& load : scene.loads)
     content.line("load", load.name, load.kind, load.surface, load.value, load.fixed, load.within, load.ramp,
-                 load.activated, load.crop);
+                 load.activated, load.crop, load.clear_of, load.clearance);
   content.line("gravity", scene.gravity);
   content.line("switched off", names_of(scene.switched_off));
 }

@@ -155,6 +155,14 @@ void read_loads(const Node& node, Scene& scene, SceneNames& names)
     if (load.activated)
       names.activations.names.push_back(load.name);
     load.crop = read_region(mapping.optional("crop"));
+    if (const Node clear_of = mapping.optional("clear_of"); clear_of.given())
+    {
+      if (load.kind == Kind::displacement)
+        clear_of.fault("goes with traction and pressure, not with displacement");
+      Mapping clear(clear_of);
+      load.clear_of = clear.required("surfaces", "a list of surfaces").references(names.surfaces);
+      load.clearance = clear.required("by", "a distance").number(Dimension::length, positive, load.clearance);
+    }
   };
   names.activations.names = names.muscles.names;
   read_list(node, scene.loads, read);

@@ -244,3 +244,34 @@ TEST(Loads, SpareTrianglesThatHaveNoTissueBehindThem)
   EXPECT_LT(deepest, 4e-3);  // the hollow reaches 10 mm into the bone
   EXPECT_NEAR(farthest, 12e-3, 0.1e-3);
 }
+
+TEST(Loads, SpareTrianglesNearSurfacesOfWhichTheyAreToBeClear)
+{
+  Scene scene = plain_scene(2e-3);
+  scene.surfaces = { sphere_surface("skin", { 0, 0, 0 }, 30e-3, 2e-3),
+                     sphere_surface("hollow", { 0, 0, 0 }, 12e-3, 1e-3),
+                     sphere_surface("bone", { 25e-3, 0, 0 }, 10e-3, 1e-3) };
+  scene.volumes = { volume_inside("tissue", { "skin" }, "fat", true) };
+  scene.volumes[0].without = { "hollow" };
+  scene.volumes[0].outside = { "bone" };
+  SceneLoad load;
+  load.name = "pressure";
+  load.kind = SceneLoad::Kind::pressure;
+  load.surface = "hollow";
+  load.value = { 10, 0, 0 };
+  load.clear_of = { "bone" };
+  load.clearance = 5e-3;
+  scene.loads = { load };
+  const Model model = bake(scene);
+  ASSERT_EQ(model.loads.size(), 1u);
+  double nearest = 1, farthest = 0;
+  for (const auto& vertex : model.loads[0].mesh.vertices)
+  {
+    const auto p = transformed(model.to_scene, vertex);
+    nearest = std::min(nearest, std::hypot(p[0] - 25e-3, p[1], p[2]) - 10e-3);
+    farthest = std::max(farthest, -p[0]);
+  }
+  EXPECT_GE(nearest, 4.9e-3);  // the bone has facets; without clearance it would be 3 mm
+  EXPECT_LT(nearest, 6.5e-3);
+  EXPECT_NEAR(farthest, 12e-3, 0.1e-3);
+}

@@ -336,6 +336,8 @@ TEST(EveryKey, constraints_and_loads)
   EXPECT_EQ(scene.loads[0].ramp, 0.1);
   EXPECT_EQ(scene.loads[1].kind, SceneLoad::Kind::pressure);
   EXPECT_EQ(scene.loads[1].value[0], -2000);
+  EXPECT_EQ(scene.loads[1].clear_of, std::vector<std::string>{ "box" });
+  EXPECT_NEAR(scene.loads[1].clearance, 1.5e-3, 1e-15);
   EXPECT_TRUE(scene.loads[2].activated);
   EXPECT_EQ(scene.loads[3].kind, SceneLoad::Kind::displacement);
   EXPECT_EQ(scene.loads[3].fixed, (std::array<bool, 3>{ false, true, true }));

@@ -63,6 +63,10 @@ struct SceneLoad
   /// Whether the load is multiplied by an activation of its own, which has the load's name, instead of by the ramp.
   bool activated = false;
   Region crop;
+  /// Traction and pressure only: triangles with a vertex closer than `clearance` [m] to one of these surfaces carry no
+  /// load.
+  std::vector<std::string> clear_of;
+  double clearance = 0;
   int line = 0;
 };
 

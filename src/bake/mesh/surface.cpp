@@ -116,7 +116,10 @@ std::vector<const Surface*> needed_surfaces(const Scene& scene)
   for (const SceneMuscle& muscle : scene.muscles)
     add({ muscle.origin.surface, muscle.insertion.surface });
   for (const SceneLoad& load : scene.loads)
+  {
     add({ load.surface });
+    add(load.clear_of);
+  }
   std::vector<const Surface*> needed;
   for (const Surface& surface : scene.surfaces)
     if (!surface.shape || !surface.shape->head || named.count(surface.name) > 0)

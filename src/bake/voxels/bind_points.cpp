@@ -1,10 +1,8 @@
-#include "bake/mesh/halve_edges.hpp"
 #include "bake/shapes/head/head.hpp"
 #include "bake/voxels/model_stages.hpp"
 #include "bake/voxels/voxel_index.hpp"
 
 #include "bake/messages.hpp"
-#include "frontalis/physics/materials/lookup.hpp"
 
 namespace frontalis
 {
@@ -13,13 +11,6 @@ namespace
 
 constexpr std::size_t points_per_task = 1024;
 constexpr double farthest_landmark = 20e-3;  // largest distance from the skin [m]
-
-// Wavelength of fine lines divided by the longest edge allowed. Halving leaves edges whose mean length is three
-// quarters of the longest, so that a wavelength has six edges.
-constexpr double edges_per_line = 4.5;
-constexpr double vertices_per_edge_area = 3.2;  // measured number of vertices per square of the longest edge
-constexpr double most_vertices = 2e6;
-constexpr double coarsening = 0.5;  // growth of edges per distance from the region in which lines are wanted
 
 /// Finds the voxel that moves a point: the one that contains it, or the nearest one within the extrapolation distance.
 class PointBinder
@@ -150,6 +141,23 @@ std::vector<Vector3d> inward_normals(const TriangleMesh& surface, const LocalFra
   return normals;
 }
 
+/// The triangles of a load that are clear of the surfaces of SceneLoad::clear_of.
+TriangleMesh clear_mesh(const SceneLoad& load, const PreparedSurfaces& surfaces, const std::string& place)
+{
+  TriangleMesh mesh = cut_mesh(named_surface(surfaces, load.surface, place).mesh(), load.crop);
+  for (const std::string& name : load.clear_of)
+  {
+    const TriangleTree& other = named_surface(surfaces, name, place).tree();
+    std::vector<bool> keep;
+    for (const Triangle& t : mesh.triangles)
+      keep.push_back(std::all_of(t.begin(), t.end(),
+                                 [&](std::int32_t v)
+                                 { return other.closest(vertex(mesh, v)).distance >= load.clearance; }));
+    mesh = keep_triangles(mesh, keep);
+  }
+  return mesh;
+}
+
 /// The triangles of a load that have tissue behind them, with normals out of the tissue. Others lie in bone or in a
 /// cavity; their part of the load would act on the nearest tissue, however little that is.
 TriangleMesh loaded_mesh(const Scene& scene, const SceneLoad& load, TriangleMesh surface, const LocalFrame& frame,
@@ -202,83 +210,6 @@ BoundMesh bind_mesh(const TriangleMesh& whole, const Region& crop, const LocalFr
     bound.binding.coordinates.push_back(coordinates[v]);
   }
   return bound;
-}
-
-FilmLaw film_law(const Scene& scene, const SceneFilm& film, const Model& model, const std::string& place)
-{
-  FilmLaw law;
-  law.thickness = film.thickness;
-  law.stretch = film.stretch;
-  // Modulus of plane strain at rest, E / (1 - nu^2) [Pa]. Poisson's ratio is the scene's, even if the profile limits
-  // bulk moduli, so that lines do not depend on the profile.
-  const auto plane_strain_modulus = [&](const std::string& name, double& poisson)
-  {
-    const std::size_t index = index_of(scene.materials, name, place, "material");
-    const Material& material = model.materials[index];
-    poisson = scene.materials[index].parameters.at("poisson");
-    return 2 * physics::shear_modulus_of(material.law, material.parameters) / (1 - poisson);
-  };
-  double base_poisson = 0;
-  law.modulus = plane_strain_modulus(film.material, law.poisson);
-  law.base_modulus = plane_strain_modulus(film.base, base_poisson);
-  if (law.modulus < 10 * law.base_modulus)
-    throw failure(
-        "{}: film '{}' is {:.3g} times as stiff as its base '{}'; lines need a film at least 10 times as stiff", place,
-        film.material, law.modulus / law.base_modulus, film.base);
-  return law;
-}
-
-// Gives the model the films of the scene's skin, and halves the edges of `surface`, in scene coordinates, until they
-// resolve their lines.
-void add_film(const Scene& scene, TriangleMesh& surface, Model& model, BakeMonitor& monitor)
-{
-  const std::string place = scene.file + ": skin: fine_lines";
-  SkinFilm& out = model.film;
-  std::vector<Box> crops;
-  std::vector<double> edges;
-  double vertices = 0;
-  for (const SceneFilm& film : scene.films)
-  {
-    const FilmLaw law = film_law(scene, film, model, place);
-    out.laws.push_back(law);
-    crops.push_back(to_box(film.crop));
-    edges.push_back(film_wavelength(law) / edges_per_line);
-    const double area = surface_area(cut_mesh(surface, film.crop));
-    if (area <= 0 && !surface.triangles.empty())
-      throw failure("{}: crop: no triangle of the published skin lies in it; check its corners and the skin's crop",
-                    place);
-    vertices += vertices_per_edge_area * area / (edges.back() * edges.back());
-    if (vertices > most_vertices)
-      throw failure(
-          "{}: lines are {} apart, and the skin needs about {:.1f} million vertices; at most {:.0f} million are "
-          "allowed: crop the film, or make it thicker",
-          place, length_text(film_wavelength(law), scene.unit), 1e-6 * vertices, 1e-6 * most_vertices);
-  }
-  out.carried = surface.triangles;
-  // the last film at a place, or -1
-  const auto film_at = [&](const Vector3d& at)
-  {
-    auto f = static_cast<std::int32_t>(crops.size()) - 1;
-    while (f >= 0 && !crops[f].contains(at))
-      --f;
-    return f;
-  };
-  const auto longest = [&](const Vector3d& at)
-  {
-    const std::int32_t own = film_at(at);
-    double edge = own < 0 ? std::numeric_limits<double>::infinity() : edges[own];
-    for (std::size_t f = 0; f < crops.size(); ++f)
-      if (const double distance = crops[f].exteriorDistance(at); distance > 0)
-        edge = std::min(edge, edges[f] + coarsening * distance);
-    return edge;
-  };
-  out.parents = halve_edges(surface, longest);
-  for (std::size_t v = 0; v < surface.vertices.size(); ++v)
-    out.law.push_back(film_at(vertex(surface, static_cast<std::int32_t>(v))));
-  for (const FilmLaw& law : out.laws)
-    monitor.found("skin: fine lines {} apart from a compression of {:.3g} %",
-                  length_text(film_wavelength(law), scene.unit),
-                  100 * (film_critical_strain(law) + (1 + law.poisson) * law.stretch));
 }
 
 void bind_landmarks(const Scene& scene, const LocalFrame& frame, const PointBinder& binder, Model& model)
@@ -336,7 +267,7 @@ void bind_surfaces(const Scene& scene, const PreparedSurfaces& surfaces, const L
     const PreparedSurface& skin = named_surface(surfaces, scene.skin.surface, scene.file + ": skin");
     TriangleMesh surface = cut_mesh(skin.mesh(), scene.skin.crop);
     if (!scene.films.empty())
-      add_film(scene, surface, model, monitor);
+      add_films(scene, surface, model, monitor);
     BoundMesh bound = bind_mesh(surface, Region(), frame, binder, monitor);
     if (bound.mesh.triangles.empty())
       throw failure(
@@ -370,7 +301,7 @@ void bind_surfaces(const Scene& scene, const PreparedSurfaces& surfaces, const L
     else
     {
       const std::string place = place_in_scene(scene, "load", load);
-      const TriangleMesh surface = cut_mesh(named_surface(surfaces, load.surface, place).mesh(), load.crop);
+      const TriangleMesh surface = clear_mesh(load, surfaces, place);
       BoundMesh bound = bind_mesh(loaded_mesh(scene, load, surface, frame, binder), Region(), frame, binder, monitor);
       const std::size_t left_out = surface.triangles.size() - bound.mesh.triangles.size();
       if (bound.mesh.triangles.empty())

@@ -145,6 +145,10 @@ double extrapolation_of(const Scene& scene, const Model& model);
 BoundMesh bind_mesh(const TriangleMesh& whole, const Region& crop, const LocalFrame& frame, const Model& model,
                     double extrapolation, BakeMonitor& monitor);
 
+/// Gives the model the films of the scene's skin, and halves the edges of `surface`, in scene coordinates, until they
+/// resolve their lines.
+void add_films(const Scene& scene, TriangleMesh& surface, Model& model, BakeMonitor& monitor);
+
 /// Fills the model's skin, landmarks and loads and binds their points to voxels. Throws Error if no triangle of a load
 /// can be bound, a vertex of the skin is too far from all voxels, or a landmark is too far from the skin.
 void bind_surfaces(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,
