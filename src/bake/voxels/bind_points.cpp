@@ -305,7 +305,8 @@ void bind_surfaces(const Scene& scene, const PreparedSurfaces& surfaces, const L
       BoundMesh bound = bind_mesh(loaded_mesh(scene, load, surface, frame, binder), Region(), frame, binder, monitor);
       const std::size_t left_out = surface.triangles.size() - bound.mesh.triangles.size();
       if (bound.mesh.triangles.empty())
-        throw failure("{}: no triangle of surface '{}' in its crop has tissue behind it", place, load.surface);
+        throw failure("{}: no triangle of surface '{}' in its crop{} has tissue behind it", place, load.surface,
+                      load.clear_of.empty() ? "" : " and clear of the surfaces of 'clear_of'");
       if (left_out > 0)
         monitor.found("load '{}': {} of {} triangles left out, because no tissue is behind them", load.name, left_out,
                       surface.triangles.size());
