@@ -217,12 +217,13 @@ TEST(Loads, OnAHollowAreCarriedByTheTissueAroundIt)
   }
 }
 
-TEST(Loads, SpareTrianglesThatHaveNoTissueBehindThem)
+/// A ball of tissue with air in a hollow of 12 mm radius, and a bone of 10 mm radius about (x, 0, 0) [m].
+Scene pressed_hollow(double x)
 {
   Scene scene = plain_scene(2e-3);
   scene.surfaces = { sphere_surface("skin", { 0, 0, 0 }, 30e-3, 2e-3),
                      sphere_surface("hollow", { 0, 0, 0 }, 12e-3, 1e-3),
-                     sphere_surface("bone", { 12e-3, 0, 0 }, 10e-3, 1e-3) };
+                     sphere_surface("bone", { x, 0, 0 }, 10e-3, 1e-3) };
   scene.volumes = { volume_inside("tissue", { "skin" }, "fat", true) };
   scene.volumes[0].without = { "hollow" };
   scene.volumes[0].outside = { "bone" };
@@ -232,6 +233,12 @@ TEST(Loads, SpareTrianglesThatHaveNoTissueBehindThem)
   load.surface = "hollow";
   load.value = { 10, 0, 0 };
   scene.loads = { load };
+  return scene;
+}
+
+TEST(Loads, SpareTrianglesThatHaveNoTissueBehindThem)
+{
+  const Scene scene = pressed_hollow(12e-3);
   const Model model = bake(scene);
   ASSERT_EQ(model.loads.size(), 1u);
   double deepest = 0, farthest = 0;
@@ -247,21 +254,9 @@ TEST(Loads, SpareTrianglesThatHaveNoTissueBehindThem)
 
 TEST(Loads, SpareTrianglesNearSurfacesOfWhichTheyAreToBeClear)
 {
-  Scene scene = plain_scene(2e-3);
-  scene.surfaces = { sphere_surface("skin", { 0, 0, 0 }, 30e-3, 2e-3),
-                     sphere_surface("hollow", { 0, 0, 0 }, 12e-3, 1e-3),
-                     sphere_surface("bone", { 25e-3, 0, 0 }, 10e-3, 1e-3) };
-  scene.volumes = { volume_inside("tissue", { "skin" }, "fat", true) };
-  scene.volumes[0].without = { "hollow" };
-  scene.volumes[0].outside = { "bone" };
-  SceneLoad load;
-  load.name = "pressure";
-  load.kind = SceneLoad::Kind::pressure;
-  load.surface = "hollow";
-  load.value = { 10, 0, 0 };
-  load.clear_of = { "bone" };
-  load.clearance = 5e-3;
-  scene.loads = { load };
+  Scene scene = pressed_hollow(25e-3);
+  scene.loads[0].clear_of = { "bone" };
+  scene.loads[0].clearance = 5e-3;
   const Model model = bake(scene);
   ASSERT_EQ(model.loads.size(), 1u);
   double nearest = 1, farthest = 0;
