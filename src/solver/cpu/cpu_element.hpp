@@ -199,20 +199,23 @@ struct CpuElement
     FRONTALIS_LAW void scalar_hourglass(Batch (&)[3][8]) const {}  // done in add_forces()
   };
 
-  /// Voxels with no more than neo-Hookean stress and fibres, in a step that needs neither bounds nor the work of
-  /// fibres. All of their code is inlined, so that fewer values pass through memory.
-  template <Stabilisation Form>
+  /// Voxels with no more than neo-Hookean stress and fibres, whose work is not needed. All of their code is inlined, so
+  /// that fewer values pass through memory.
+  template <Stabilisation Form, bool WithBound>
   struct SimpleVoxels : VoxelsOf<Form>
   {
-    static constexpr bool with_bound = false;
+    static constexpr bool with_bound = WithBound;
     static bool are(const VoxelsOf<Form>& at)
     {
-      return at.tile->simple && !at.with_bound && at.g.fibre_memory == nullptr;
+      return at.tile->simple && at.with_bound == WithBound && at.g.fibre_memory == nullptr;
     }
     static constexpr bool has_laws() { return false; }
     FRONTALIS_LAW void add_laws(const Kinematics&, Stress&) const {}
     FRONTALIS_LAW void add_viscosity(const Kinematics&, Stress&) const {}
-    FRONTALIS_LAW Batch stiffness_now(const Kinematics&) const { return Batch(Real(0)); }
+    FRONTALIS_LAW Batch stiffness_now(const Kinematics& k) const
+    {
+      return WithBound ? physics::stiffness_now(*this, k) : Batch(Real(0));
+    }
     FRONTALIS_LAW void add_fibres(const Kinematics& k, Stress& P) const
     {
       if (this->g.fibres != nullptr)
@@ -347,8 +350,14 @@ struct CpuElement
     Lane::add(row_of(1, strip), row_of(1, other), value[2], value[3]);
     Lane::add(row_of(3, strip), row_of(3, other), value[6], value[7]);
   }
-  // The next two functions are not inlined, so that the compiler generates the same code for simple voxels as without
-  // them.
+  // The next functions are not inlined, so that the compiler generates the same code for simple voxels without bounds as
+  // without them.
+  template <Stabilisation Form>
+  static __attribute__((noinline)) void add_simple_forces_and_bounds(const VoxelsOf<Form>& at, Real* below, Real* above,
+                                                                     const std::int32_t* base)
+  {
+    add_forces<Form, false>(SimpleVoxels<Form, true>{ at }, below, above, base);
+  }
   template <Stabilisation Form>
   static __attribute__((noinline)) void add_other_forces(const VoxelsOf<Form>& at, Real* below, Real* above,
                                                          const std::int32_t* base)

@@ -23,11 +23,13 @@ struct CpuKernelBody
     double work = 0;
     const std::int32_t base[2] = { g.plane_nodes[plane], g.plane_nodes[plane + 1] };
     using Batches = typename Element::template VoxelsOf<Form>;
-    using Simple = typename Element::template SimpleVoxels<Form>;
+    using Simple = typename Element::template SimpleVoxels<Form, false>;
     const auto add = [&](const Batches& at)
     {
       if (Simple::are(at))
         Element::template add_forces<Form, false>(Simple{ at }, below, above, base);
+      else if (Element::template SimpleVoxels<Form, true>::are(at))
+        Element::template add_simple_forces_and_bounds<Form>(at, below, above, base);
       else if (at.tile->cut >= 0)
         Element::template add_cut_forces<Form>(at, below, above, base);
       else

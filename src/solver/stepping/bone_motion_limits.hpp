@@ -27,7 +27,7 @@ public:
   /// Longest plan [s] in a motion of this duration: bones move by at most half of a voxel, because the tissue beside
   /// them may stiffen as they move. Infinite if the whole motion is no longer than that.
   double longest_plan(const Poses& from, const Poses& to, double seconds) const;
-  /// Whether a bone moves by more than 1.5 % of a voxel per step, about 3 % of the speed of sound, as a jaw does that
+  /// Whether a bone moves by more than 3 % of a voxel per step, about 6 % of the speed of sound, as a jaw does that
   /// opens wide within 0.1 s.
   bool fast(const Poses& from, const Poses& to, double seconds, double step) const;
   /// Records a motion that has started, with which jumps() compares the next motion.
