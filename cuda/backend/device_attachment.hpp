@@ -13,8 +13,8 @@ namespace cuda
 {
 
 /// The groups of a model in the form that the device needs; see AttachedArguments. The groups of a patch are
-/// successive. Of them, or of all groups in strips, those whose nodes are all held come first, and both kinds are in
-/// the order of the masters' device nodes.
+/// successive, and so are their ties and planes. Of them, or of all groups in strips, those whose nodes are all held
+/// come first, and both kinds are in the order of the masters' device nodes.
 struct AttachedTables
 {
   /// `patches`: null in strips.
@@ -24,11 +24,17 @@ struct AttachedTables
   std::vector<AttachedGroup> groups;
   std::vector<AttachedTie> ties;
   std::vector<AttachedPlace> places;
-  std::vector<std::uint32_t> patch_groups;
+  std::vector<PatchGroups> patch_groups;
+  std::vector<std::uint32_t> grouped;
 
 private:
+  void add_group(const Model& model, const std::vector<double>& mass, const std::vector<std::uint32_t>& device_node,
+                 const AttachedNode* begin, const AttachedNode* end);
   std::int32_t add_place(const Model& model, std::int32_t node, std::int32_t surface);
 };
+
+/// Largest number of words of 16 bytes that the tables of groups of a block's patches take.
+std::uint32_t most_group_words(const Model& model, const VoxelPatches& patches);
 
 /// Attached nodes and joints in device memory. It is what AttachedNodes is on host backends.
 class DeviceAttachment : public EffectPart
@@ -56,7 +62,8 @@ private:
   DeviceArray<AttachedTie> ties_;
   DeviceArray<AttachedPlace> places_;
   DeviceArray<physics::KeptLevel<float>> planes_;
-  DeviceArray<std::uint32_t> patch_groups_;
+  DeviceArray<PatchGroups> patches_;
+  DeviceArray<std::uint32_t> grouped_;
 };
 
 }  // namespace cuda

@@ -27,6 +27,10 @@ VoxelCut::VoxelCut(const Model& model, const CutChoice& choice)
     with.keeps_triangles = part_room.triangle_words > 0;
     if (fit(with))
       room = with;
+    with = room;
+    with.group_words = most_group_words(model, cut);
+    if (fit(with))
+      room = with;
     return cut.fits_indices && part_room.fits_indices && fit(room);
   };
   PatchSettings settings = choice.patches;

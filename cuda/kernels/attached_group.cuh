@@ -13,6 +13,14 @@ namespace cuda
 /// do not wait for each other.
 constexpr int group_lanes = 8;
 
+/// Where the groups of a launch or of a patch are. Indices are those of AttachedArguments.
+struct GroupTables
+{
+  const AttachedGroup* groups;
+  const AttachedTie* ties;
+  physics::KeptLevel<float>* planes;  ///< the same as AttachedArguments::planes, or a copy of them
+};
+
 /// A group in the form that physics::move_attached_group() reads. Levels are functions of the displacement relative to
 /// the surface, which single precision resolves to nanometres.
 template <int Lanes>
@@ -23,6 +31,7 @@ struct MovedGroup
   using Level = physics::MovingLevel<float>;
 
   const StepArguments& g;
+  const GroupTables& tables;
   const AttachedGroup& group;
   // Displacements and velocities after the update, indexed by device node:
   float4* u;
@@ -41,8 +50,10 @@ struct MovedGroup
       for (int i = 0; i < 3; ++i)
       {
         balance.momentum[i] += __shfl_xor_sync(together, balance.momentum[i], apart);
-        for (int j = 0; j < 3; ++j)
+        for (int j = i; j < 3; ++j)
           balance.mass[i][j] += __shfl_xor_sync(together, balance.mass[i][j], apart);
+        for (int j = 0; j < i; ++j)
+          balance.mass[i][j] = balance.mass[j][i];
       }
     // All threads have read the master's motion before one of them changes it.
     __syncwarp(together);
@@ -50,10 +61,10 @@ struct MovedGroup
   __device__ __forceinline__ std::int32_t last() const { return group.last; }
   __device__ __forceinline__ float mass() const { return group.mass; }
   __device__ __forceinline__ bool fixed(int axis) const { return (group.fixed >> axis & 1u) != 0; }
-  __device__ __forceinline__ bool held(std::int32_t tie) const { return g.attached.ties[tie].plane < 0; }
-  __device__ __forceinline__ float ratio(std::int32_t tie) const { return g.attached.ties[tie].ratio; }
-  __device__ __forceinline__ float mass(std::int32_t tie) const { return g.attached.ties[tie].mass; }
-  __device__ __forceinline__ float offset(std::int32_t tie) const { return g.attached.ties[tie].offset; }
+  __device__ __forceinline__ bool held(std::int32_t tie) const { return tables.ties[tie].plane < 0; }
+  __device__ __forceinline__ float ratio(std::int32_t tie) const { return tables.ties[tie].ratio; }
+  __device__ __forceinline__ float mass(std::int32_t tie) const { return tables.ties[tie].mass; }
+  __device__ __forceinline__ float offset(std::int32_t tie) const { return tables.ties[tie].offset; }
 
   __device__ __forceinline__ Motion motion_of(std::uint32_t node) const
   {
@@ -68,7 +79,7 @@ struct MovedGroup
     v[2][node] = to.v.z;
   }
   __device__ __forceinline__ Motion motion() const { return motion_of(group.master); }
-  __device__ __forceinline__ Motion motion(std::int32_t tie) const { return motion_of(g.attached.ties[tie].node); }
+  __device__ __forceinline__ Motion motion(std::int32_t tie) const { return motion_of(tables.ties[tie].node); }
   __device__ __forceinline__ void set_motion(const Motion& to) const
   {
     if (lane == 0)
@@ -76,7 +87,7 @@ struct MovedGroup
   }
   __device__ __forceinline__ void set_motion(std::int32_t tie, const Motion& to) const
   {
-    set_motion_of(g.attached.ties[tie].node, to);
+    set_motion_of(tables.ties[tie].node, to);
   }
 
   __device__ __forceinline__ Motion bone_at(std::int32_t bone, const float (&rest)[3]) const
@@ -89,18 +100,18 @@ struct MovedGroup
   }
   __device__ __forceinline__ Motion bone_at_node(std::int32_t tie) const
   {
-    return bone_at(g.attached.ties[tie].bone, g.attached.ties[tie].rest);
+    return bone_at(tables.ties[tie].bone, tables.ties[tie].rest);
   }
   __device__ __forceinline__ Motion bone_at_master(std::int32_t tie) const
   {
-    return bone_at(g.attached.ties[tie].bone, group.rest);
+    return bone_at(tables.ties[tie].bone, group.rest);
   }
 
   /// The plane of a node at the displacement `gone` relative to the surface. Where no samples are stored or the
   /// gradient is too short, the latest plane is kept.
   __device__ __forceinline__ physics::KeptLevel<float> kept_level(std::int32_t plane, const Place& gone) const
   {
-    physics::KeptLevel<float> level = g.attached.planes[plane];
+    physics::KeptLevel<float> level = tables.planes[plane];
     if (level.covers(gone))
       return level;
     const AttachedPlace at = g.attached.places[plane];
@@ -112,7 +123,7 @@ struct MovedGroup
     else if (!physics::sample(field, { { at.cell[0], at.cell[1], at.cell[2] }, offset + gone }, value))
       return level;
     physics::renew_level(value, gone, level);
-    g.attached.planes[plane] = level;
+    tables.planes[plane] = g.attached.planes[plane] = level;
     return level;
   }
   __device__ __forceinline__ Level level_at(std::int32_t plane, std::int32_t bone, const float (&rest)[3],
@@ -130,23 +141,28 @@ struct MovedGroup
   }
   __device__ __forceinline__ Level level_of_node(std::int32_t tie, const Place& moved) const
   {
-    return level_at(g.attached.ties[tie].plane, g.attached.ties[tie].bone, g.attached.ties[tie].rest, moved);
+    return level_at(tables.ties[tie].plane, tables.ties[tie].bone, tables.ties[tie].rest, moved);
   }
   __device__ __forceinline__ Level level_of_master(std::int32_t tie, const Place& moved) const
   {
-    return level_at(g.attached.ties[tie].master_plane, g.attached.ties[tie].bone, group.rest, moved);
+    return level_at(tables.ties[tie].master_plane, tables.ties[tie].bone, group.rest, moved);
   }
 };
 
 /// Applies the constraints of one group after the update of a step. The `Lanes` threads of the group call it together.
 /// u, v: as in MovedGroup.
 template <int Lanes>
-__device__ __forceinline__ void follow_master(const StepArguments& g, std::uint32_t index, int step, float4* u,
-                                              float* const (&v)[3])
+__device__ __forceinline__ void follow_master(const StepArguments& g, const GroupTables& tables, std::uint32_t index,
+                                              int step, float4* u, float* const (&v)[3])
 {
-  const AttachedGroup group = g.attached.groups[index];
-  MovedGroup<Lanes> moved{ g, group, u, v, step, static_cast<int>(threadIdx.x) & (Lanes - 1) };
+  const AttachedGroup group = tables.groups[index];
+  MovedGroup<Lanes> moved{ g, tables, group, u, v, step, static_cast<int>(threadIdx.x) & (Lanes - 1) };
   physics::move_attached_group(moved, g.dt);
+}
+
+__device__ __forceinline__ GroupTables group_tables(const AttachedArguments& attached)
+{
+  return { attached.groups, attached.ties, attached.planes };
 }
 
 }  // namespace cuda

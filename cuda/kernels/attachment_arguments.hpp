@@ -8,7 +8,7 @@ namespace frontalis
 {
 
 /// A master and the range of the nodes that follow it.
-struct AttachedGroup
+struct alignas(16) AttachedGroup
 {
   float rest[3];             ///< rest position of the master [m]
   float mass;                ///< of the master [kg]
@@ -18,7 +18,7 @@ struct AttachedGroup
 };
 
 /// A node that follows a master.
-struct AttachedTie
+struct alignas(16) AttachedTie
 {
   float rest[3];              ///< rest position of the node [m]
   float ratio, mass;          ///< AttachedNode::ratio; mass of the node [kg]
@@ -38,6 +38,23 @@ struct AttachedPlace
   std::int32_t surface;  ///< index into StepArguments::fields
 };
 
+/// First group, tie and plane of a patch. Those of a patch are successive.
+struct PatchGroups
+{
+  std::uint32_t group;
+  std::int32_t tie, plane;
+};
+
+/// Number of words of 16 bytes that the groups of a patch take, with their ties and planes. `next`: the entry of the
+/// next patch.
+FRONTALIS_LAW std::uint32_t group_words(const PatchGroups& patch, const PatchGroups& next)
+{
+  const std::size_t bytes = sizeof(AttachedGroup) * (next.group - patch.group) +
+                            sizeof(AttachedTie) * static_cast<std::size_t>(next.tie - patch.tie) +
+                            sizeof(physics::KeptLevel<float>) * static_cast<std::size_t>(next.plane - patch.plane);
+  return static_cast<std::uint32_t>(bytes / 16);
+}
+
 /// Attached nodes and joints in device memory.
 struct AttachedArguments
 {
@@ -46,8 +63,9 @@ struct AttachedArguments
   const AttachedTie* ties;
   const AttachedPlace* places;        ///< one per plane
   physics::KeptLevel<float>* planes;  ///< found at displacements relative to the surface
-  /// first group of each patch, and the number of all groups; null in strips
-  const std::uint32_t* patch_groups;
+  // null in strips:
+  const PatchGroups* patches;    ///< of each patch, and the numbers of all groups, ties and planes
+  const std::uint32_t* grouped;  ///< a bit per device node: whether it is in a group
 };
 
 }  // namespace frontalis

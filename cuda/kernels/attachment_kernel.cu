@@ -14,7 +14,7 @@ __global__ void __launch_bounds__(block) follow_masters(const __grid_constant__ 
   wait_for_kernel_before();
   const std::uint32_t index = (blockIdx.x * block + threadIdx.x) / group_lanes;
   if (index < g.attached.count)
-    follow_master<group_lanes>(g, index, g.step_begin, g.u[1 - g.first], g.v);
+    follow_master<group_lanes>(g, group_tables(g.attached), index, g.step_begin, g.u[1 - g.first], g.v);
 }
 
 }  // namespace cuda

@@ -20,6 +20,7 @@ struct PatchMemory
   float4* shell;        // displacements of vertices of shells, and forces of triangles
   uint4* tables;        // see PatchShell
   float4* touch;        // vertices that may touch other tissue; see patch_touch.cuh
+  uint4* groups;        // see GroupStep
   // smallest distance that put_pushes() found, as bits; patches use two entries in turn, because slow threads may still
   // read the entry of the previous patch
   std::uint32_t* least;
@@ -33,7 +34,8 @@ __device__ __forceinline__ PatchMemory patch_memory(const StepLaunch& launch)
   float4* const shell = push + (has<With, Effects::contact> ? 2 * launch.room.contact_points : 0);
   float4* const tables = shell + (has<With, Effects::shell> ? launch.room.shell_words : 0);
   float4* const touch = tables + (has<With, Effects::shell> ? launch.room.table_words : 0);
-  float4* const least = touch + (has<With, Effects::touch> ? touch_room * launch.room.touch_vertices : 0);
+  float4* const groups = touch + (has<With, Effects::touch> ? touch_room * launch.room.touch_vertices : 0);
+  float4* const least = groups + (has<With, Effects::groups> ? launch.room.group_words : 0);
   float* const v = reinterpret_cast<float*>(least + (has<With, Effects::contact> ? 1 : 0));
   return { all,
            { v, v + launch.most_nodes, v + 2 * launch.most_nodes },
@@ -43,6 +45,7 @@ __device__ __forceinline__ PatchMemory patch_memory(const StepLaunch& launch)
            shell,
            reinterpret_cast<uint4*>(tables),
            touch,
+           reinterpret_cast<uint4*>(groups),
            reinterpret_cast<std::uint32_t*>(least) };
 }
 

@@ -62,5 +62,22 @@ __device__ __forceinline__ float4 receive(const float4* from, std::uint32_t mark
   return make_float4(word.x, word.y, word.z, 0);
 }
 
+/// Makes the state of a node known after its step. `last`: whether this is the last step of a launch, which writes all
+/// nodes to global memory.
+__device__ __forceinline__ void publish(const StepArguments& g, std::uint32_t node, const float (&u)[3],
+                                        const float (&v)[3], float inverse_mass, bool on_border, bool last,
+                                        float4* next, int step)
+{
+  if (last)
+  {
+    next[node] = make_float4(u[0], u[1], u[2], inverse_mass);
+#pragma unroll
+    for (int i = 0; i < 3; ++i)
+      g.v[i][node] = v[i];
+  }
+  else if (on_border)
+    send(next + node, u, mark(g, step + 1));
+}
+
 }  // namespace cuda
 }  // namespace frontalis

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "cuda/kernels/attached_group.cuh"
 #include "cuda/kernels/cut_voxel.cuh"
 #include "cuda/kernels/element_stress.cuh"
 #include "cuda/kernels/node_tasks.cuh"
+#include "cuda/kernels/patch_groups.cuh"
 #include "cuda/kernels/patch_shell.cuh"
 #include "cuda/kernels/patch_touch.cuh"
 
@@ -68,10 +68,12 @@ __device__ __forceinline__ void put_forces(const StepArguments& g, const VoxelFe
   {
     // Models that have groups but no cut voxels use the same kernels.
     if (g.centres != nullptr)
+    {
       centre = tissue_centre(g, voxel.place.palette);
 #pragma unroll
-    for (int c = 0; c < 3; ++c)
-      physics::to_tissue_centre(centre, mode[c]);
+      for (int c = 0; c < 3; ++c)
+        physics::to_tissue_centre(centre, mode[c]);
+    }
   }
   element_forces(element_voxel<With>(g, voxel.place, activation, relaxes), mode, with_bound, stiffness);
   if (with_bound)
@@ -80,7 +82,8 @@ __device__ __forceinline__ void put_forces(const StepArguments& g, const VoxelFe
   for (int c = 0; c < 3; ++c)
   {
     if constexpr (has<With, Effects::cut>)
-      physics::from_tissue_centre(centre, mode[c]);
+      if (g.centres != nullptr)
+        physics::from_tissue_centre(centre, mode[c]);
     physics::walsh_hadamard_transposed(mode[c]);
 #pragma unroll
     for (int b = 0; b < 8; ++b)
@@ -123,24 +126,8 @@ __device__ __forceinline__ std::uint32_t bound_of_node(const StepArguments& g, c
   return frequency_bits_of(g, node, inverse_mass, stiffness);
 }
 
-/// Makes the state of a node known after its step; see step_patch_node().
-__device__ __forceinline__ void publish(const StepArguments& g, std::uint32_t node, const float (&u)[3],
-                                        const float (&v)[3], float inverse_mass, bool on_border, bool last,
-                                        float4* next, int step)
-{
-  if (last)
-  {
-    next[node] = make_float4(u[0], u[1], u[2], inverse_mass);
-#pragma unroll
-    for (int i = 0; i < 3; ++i)
-      g.v[i][node] = v[i];
-  }
-  else if (on_border)
-    send(next + node, u, mark(g, step + 1));
-}
-
-/// Updates a node. `own`: index of the node in the block. `last`: whether this is the last step, which writes all nodes
-/// to global memory.
+/// Updates a node, and makes it known if it is in no group. `own`: index of the node in the block. `last`: as in
+/// publish().
 template <Effects With>
 __device__ __forceinline__ void step_patch_node(const StepArguments& g, const PatchMemory& memory, std::uint32_t node,
                                                 std::uint32_t own, const StepLaunch& launch, bool on_border, bool last,
@@ -186,38 +173,8 @@ __device__ __forceinline__ void step_patch_node(const StepArguments& g, const Pa
       memory.v[i][own] = n.v[i];
     place = make_float4(n.u[0], n.u[1], n.u[2], fetch.own.w);
   }
-  if (!has<With, Effects::groups>)
+  if (!has<With, Effects::groups> || !in_group(g, node))
     publish(g, node, n.u, n.v, fetch.own.w, on_border, last, next, step);
-}
-
-/// Not inlined, so that the step of voxels and nodes does not share its registers.
-static __device__ __noinline__ void follow_apart(const StepArguments& g, std::uint32_t group, int step, float4* u,
-                                                 float* const (&v)[3])
-{
-  follow_master<group_lanes>(g, group, step, u, v);
-}
-
-/// Moves the groups of a patch after the update of its nodes, which have all nodes of the groups, and makes the nodes
-/// known. `filled`: number of nodes in earlier patches of the block.
-static __device__ __forceinline__ void move_groups(const StepArguments& g, const PatchMemory& memory,
-                                                   const Patch& patch, std::uint32_t index, std::uint32_t filled,
-                                                   std::uint32_t most_halo, bool last, float4* next, int step)
-{
-  // Places of the first node of the patch. Groups know nodes by their numbers on the device.
-  float4* const u = memory.place + most_halo + filled;
-  float* const v[3] = { memory.v[0] + filled, memory.v[1] + filled, memory.v[2] + filled };
-  float* const numbered[3] = { v[0] - patch.first_node, v[1] - patch.first_node, v[2] - patch.first_node };
-  __syncthreads();
-  const std::uint32_t end = __ldg(g.attached.patch_groups + index + 1);
-  const std::uint32_t first = __ldg(g.attached.patch_groups + index) + threadIdx.x / group_lanes;
-  for (std::uint32_t group = first; group < end; group += blockDim.x / group_lanes)
-    follow_apart(g, group, step, u - patch.first_node, numbered);
-  __syncthreads();
-  for (std::uint32_t n = threadIdx.x; n < patch.nodes; n += blockDim.x)
-  {
-    const float moved[3] = { u[n].x, u[n].y, u[n].z }, velocity[3] = { v[0][n], v[1][n], v[2][n] };
-    publish(g, patch.first_node + n, moved, velocity, u[n].w, n < patch.border, last, next, step);
-  }
 }
 
 // Set: effects, as an int for the reason given in step_kernel.cu.
@@ -234,7 +191,7 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
     load_activations(g, activations);
   float until[most_turns];  // per patch of the block: see ContactWatch [m]
   std::uint32_t round = 0;
-  std::uint32_t filled = 0, kept = 0;
+  std::uint32_t filled = 0, kept = 0, kept_groups = 0;
   for (std::uint32_t p = blockIdx.x; p < g.patch_count; p += gridDim.x)
   {
     const Patch patch = g.patches[p];
@@ -249,6 +206,8 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
     filled += patch.nodes;
     if (has<With, Effects::shell>)
       kept += keep_shell(g, launch, memory, p, kept);
+    if (has<With, Effects::groups>)
+      kept_groups += keep_groups(g, launch, memory, p, kept_groups);
   }
   if (threadIdx.x < 25)
     memory.force[threadIdx.x * memory.width + launch.most_voxels] = 0;
@@ -260,7 +219,7 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
     const float4* const u = g.u[present];
     const bool with_bound = g.frequency_bound != nullptr && (g.bound_every_step || step + 1 == g.steps);
     std::uint32_t frequency_bits = 0;
-    filled = kept = 0;
+    filled = kept = kept_groups = 0;
     const Activations activation = activations_at(g, step, activations);
     const float relaxes = has<With, Effects::viscosity> && g.relaxation != nullptr ? __ldg(g.relaxation + step) : 0.0f;
     int turn = 0;
@@ -331,14 +290,18 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
       for (std::uint32_t n = threadIdx.x; n < patch.nodes; n += threads)
         step_patch_node<With>(g, memory, patch.first_node + n, filled + n, launch, n < patch.border, last,
                               g.u[1 - present], step);
-      if constexpr (has<With, Effects::groups>)
-        if (!g.forces_only)
-          move_groups(g, memory, patch, p, filled, launch.most_halo, last, g.u[1 - present], step);
       if (with_bound)
         for (std::uint32_t n = threadIdx.x; n < patch.nodes; n += threads)
           if (__ldg(g.patch_tasks + patch.first_node + n) != patch_task::still)
             frequency_bits = max(frequency_bits, bound_of_node<With>(g, memory, patch, patch.first_node + n,
                                                                      memory.place[launch.most_halo + filled + n].w));
+      if constexpr (has<With, Effects::groups>)
+      {
+        const GroupStep groups = fetch_groups(g, launch, memory, p, kept_groups);
+        if (!g.forces_only)
+          move_groups(g, launch, memory, patch, groups, filled, last, g.u[1 - present], step);
+        kept_groups += groups.words;
+      }
       filled += patch.nodes;
       kept += shell.words;
     }

@@ -296,7 +296,7 @@ constexpr Effects voxel_part(Effects set)
   return set & (Effects::fibres | Effects::viscosity | Effects::general_element);
 }
 
-/// Shared memory that a patch needs for effects with points that are bound to voxels.
+/// Shared memory that a patch needs for effects with points that are bound to voxels, and for groups.
 struct PatchRoom
 {
   std::uint32_t contact_points;
@@ -304,7 +304,8 @@ struct PatchRoom
   // The following members count words of 16 bytes.
   std::uint32_t shell_words;  ///< displacements of vertices, and forces of triangles
   std::uint32_t table_words;  ///< tables of shells, of all patches of a block
-  bool keeps_triangles;       ///< whether the tables include the triangles
+  std::uint32_t group_words;  ///< tables of groups, of all patches of a block; 0: they stay in global memory
+  bool keeps_triangles;       ///< whether the tables of shells include the triangles
 };
 
 /// How the step kernel is launched for a model.
@@ -315,7 +316,7 @@ struct StepLaunch
   int blocks, threads;
   std::uint32_t most_voxels, most_halo, most_nodes;  ///< as in VoxelPatches
   std::size_t shared_bytes;                          ///< per block
-  PatchRoom room;                                    ///< shared memory of a patch for points of contact and shells
+  PatchRoom room;                                    ///< as in patch_bytes()
 };
 
 /// Rows of voxels in a strip, and blocks of the strip kernel per multiprocessor. More rows share more nodes but take
@@ -331,13 +332,14 @@ constexpr int strip_blocks(Effects effects)
 }
 
 /// Shared memory of a block [bytes]. It holds displacements of halo and own nodes, velocities of own nodes, forces on
-/// the corners of voxels and their stiffness bounds, points and vertices of contact, and shells.
+/// the corners of voxels and their stiffness bounds, points and vertices of contact, shells, and groups.
 constexpr std::size_t patch_bytes(std::size_t most_voxels, std::size_t most_halo, std::size_t most_nodes,
                                   const PatchRoom& room = {})
 {
   const bool any = room.contact_points > 0 || room.shell_words > 0 || room.touch_vertices > 0;
   const std::size_t words = 2 * room.contact_points + room.shell_words + room.table_words;
-  return sizeof(float4) * (most_halo + most_nodes + (any ? words + touch_room * room.touch_vertices + 1 : 0)) +
+  return sizeof(float4) *
+             (most_halo + most_nodes + room.group_words + (any ? words + touch_room * room.touch_vertices + 1 : 0)) +
          3 * sizeof(float) * most_nodes + 25 * sizeof(float) * (most_voxels + 1);
 }
 

@@ -114,11 +114,15 @@ struct Device
     std::vector<float4> words(motions.size() / 4);
     std::memcpy(words.data(), motions.data(), motions.size() * sizeof(float));
     g.bone_motions = words.data();
-    g.attached = { tables.groups.data(), static_cast<std::uint32_t>(tables.groups.size()),
-                   tables.ties.data(),   tables.places.data(),
-                   planes.data(),        nullptr };
+    g.attached = { tables.groups.data(),
+                   static_cast<std::uint32_t>(tables.groups.size()),
+                   tables.ties.data(),
+                   tables.places.data(),
+                   planes.data(),
+                   nullptr,
+                   nullptr };
     for (std::uint32_t group = 0; group < g.attached.count; ++group)
-      follow_master<1>(g, group, 0, g.u[1], g.v);
+      follow_master<1>(g, group_tables(g.attached), group, 0, g.u[1], g.v);
   }
 
   static std::vector<std::uint32_t> numbers(std::size_t count)

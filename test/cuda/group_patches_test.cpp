@@ -97,14 +97,17 @@ std::vector<To> words_of(const std::vector<From>& from)
   return to;
 }
 
-// Compares the motion with that on the reference backend. `turns`: number of patches of the block.
-void compare(int turns)
+// Compares the motion with that on the reference backend. `turns`: number of patches of the block. `shared`: whether
+// shared memory holds the tables of groups.
+void compare(int turns, bool shared)
 {
   const Model model = whole_model();
   const Discretisation d(model);
   const VoxelPatches patches(model, { 1, turns });
   const std::size_t nodes = model.nodes.size() + 1;
-  ASSERT_LT(patch_bytes(patches.most_voxels, patches.most_halo, patches.most_nodes), sizeof frontalis::cuda::all);
+  PatchRoom room{};
+  room.group_words = shared ? most_group_words(model, patches) : 0;
+  ASSERT_LT(patch_bytes(patches.most_voxels, patches.most_halo, patches.most_nodes, room), sizeof frontalis::cuda::all);
 
   const auto word = [](double x, double y, double z, double w) {
     return float4{ static_cast<float>(x), static_cast<float>(y), static_cast<float>(z), static_cast<float>(w) };
@@ -177,8 +180,10 @@ void compare(int turns)
   g.frequency_bound = &bound;
   g.attached = { tables.groups.data(), static_cast<std::uint32_t>(tables.groups.size()),
                  tables.ties.data(),   tables.places.data(),
-                 planes.data(),        tables.patch_groups.data() };
+                 planes.data(),        tables.patch_groups.data(),
+                 tables.grouped.data() };
   StepLaunch launch{};
+  launch.room = room;
   launch.most_voxels = patches.most_voxels;
   launch.most_halo = patches.most_halo;
   launch.most_nodes = patches.most_nodes;
@@ -211,7 +216,8 @@ void compare(int turns)
 TEST(PatchesOfTheGpu, MoveGroupsAndCutVoxelsAsTheReference)
 {
   for (const int turns : { 1, 2, 3 })
-    compare(turns);
+    for (const bool shared : { true, false })
+      compare(turns, shared);
 }
 
 #else

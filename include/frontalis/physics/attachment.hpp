@@ -84,21 +84,25 @@ struct Balance
   /// Solves the equation by elimination; the matrix is symmetric and positive definite.
   FRONTALIS_LAW Vec3<T> change()
   {
+    T inverse[3];
     FRONTALIS_UNROLL
     for (int p = 0; p < 3; ++p)
+    {
+      inverse[p] = T(1) / mass[p][p];
       for (int i = p + 1; i < 3; ++i)
       {
-        const T factor = mass[i][p] / mass[p][p];
+        const T factor = mass[i][p] * inverse[p];
         for (int j = p; j < 3; ++j)
           mass[i][j] = mass[i][j] - factor * mass[p][j];
         momentum[i] = momentum[i] - factor * momentum[p];
       }
+    }
     FRONTALIS_UNROLL
     for (int p = 2; p >= 0; --p)
     {
       for (int j = p + 1; j < 3; ++j)
         momentum[p] = momentum[p] - mass[p][j] * momentum[j];
-      momentum[p] = momentum[p] / mass[p][p];
+      momentum[p] = momentum[p] * inverse[p];
     }
     return { momentum[0], momentum[1], momentum[2] };
   }
