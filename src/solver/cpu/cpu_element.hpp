@@ -350,8 +350,8 @@ struct CpuElement
     Lane::add(row_of(1, strip), row_of(1, other), value[2], value[3]);
     Lane::add(row_of(3, strip), row_of(3, other), value[6], value[7]);
   }
-  // The next functions are not inlined, so that the compiler generates the same code for simple voxels without bounds as
-  // without them.
+  // The next functions are not inlined, so that the compiler generates the same code for simple voxels without bounds
+  // as without them.
   template <Stabilisation Form>
   static __attribute__((noinline)) void add_simple_forces_and_bounds(const VoxelsOf<Form>& at, Real* below, Real* above,
                                                                      const std::int32_t* base)
