@@ -10,9 +10,12 @@ namespace
 const void* kernel(Effects effects)
 {
   if ((effects & Effects::groups) == Effects::groups)
-    return (effects & (Effects::contact | Effects::shell | Effects::touch)) == Effects::none
-               ? group_patch_kernel(effects)
-               : whole_group_patch_kernel(effects);
+  {
+    if ((effects & (Effects::shell | Effects::touch)) != Effects::none)
+      return whole_group_patch_kernel(effects);
+    return (effects & Effects::contact) == Effects::contact ? contact_group_patch_kernel(effects)
+                                                            : group_patch_kernel(effects);
+  }
   if ((effects & Effects::touch) == Effects::touch)
     return (effects & (Effects::contact | Effects::shell)) == Effects::none ? touch_patch_kernel(effects)
                                                                             : whole_patch_kernel(effects);

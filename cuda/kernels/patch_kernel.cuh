@@ -336,6 +336,7 @@ const void* shell_patch_kernel(Effects effects);
 const void* touch_patch_kernel(Effects effects);
 const void* whole_patch_kernel(Effects effects);
 const void* group_patch_kernel(Effects effects);
+const void* contact_group_patch_kernel(Effects effects);
 const void* whole_group_patch_kernel(Effects effects);
 
 }  // namespace cuda
