@@ -20,8 +20,8 @@ namespace
 
 constexpr double least_in_tissue = 0.4;  // share of a muscle's volume below which its place is doubtful
 
-/// Warns of surfaces that the scene cuts out of the tissue, such as bones, but that lie nowhere near it: their length
-/// unit or their place is wrong, and tissue fills the place where they should be.
+/// Warns of surfaces that the scene cuts out of the tissue, such as bones, but that lie nowhere near it or are smaller
+/// than a voxel: their length unit or their place is wrong, and tissue fills the place where they should be.
 void find_surfaces_apart(const Scene& scene, const Volumes& volumes, BakeMonitor& monitor)
 {
   const Box tissue = volumes.tissue_box();
@@ -33,6 +33,10 @@ void find_surfaces_apart(const Scene& scene, const Volumes& volumes, BakeMonitor
       if (entry.volume->tissue && !body.box().intersects(tissue) && told.insert(body.name()).second)
         monitor.warn("surface '{}' bounds no tissue: it spans {}, the tissue {}; check its place and its length unit",
                      body.name(), box_text(body.box(), scene.unit), box_text(tissue, scene.unit));
+      else if (body.box().diagonal().norm() < to_vector(scene.accuracy.voxel).minCoeff() &&
+               told.insert(body.name()).second)
+        monitor.warn("surface '{}' is smaller than a voxel: it spans {}; check its length unit", body.name(),
+                     box_text(body.box(), scene.unit));
     }
 }
 
@@ -169,6 +173,9 @@ Model bake(const Scene& given, BakeReport* report, const BakeProgress& progress)
   restrict_nodes(scene, surfaces, fibres, frame, model, monitor);
   remove_islands(model, monitor);
   attach_nodes(scene, surfaces, frame, model, monitor);
+  if (model.rigid.empty() && model.sliding.empty() && model.attached.empty() && model.prescribed.empty())
+    monitor.warn("{}: no node is held or slides on a surface, so that the tissue is free to fly away; add constraints",
+                 scene.file);
   settle_joints(model);
 
   add_fibres(scene, fibres, frame, model, monitor);

@@ -25,7 +25,7 @@ void check_magnitudes(const Scene& scene, const Model& model, BakeMonitor& monit
   for (const SceneMuscle& muscle : scene.muscles)
   {
     const std::string place = place_in_scene(scene, "muscle", muscle);
-    check(place, "stress_reference", muscle.stress_reference, 0, 100e6, "Pa");
+    check(place, "stress_reference", muscle.stress_reference, 1e3, 100e6, "Pa");
     check(place, "cross_section", muscle.cross_section, 0, 0.01, "m2");
   }
   check(scene.file, "gravity", to_vector(scene.gravity).norm(), 0, 100, "m/s2");

@@ -12,7 +12,7 @@ namespace
 struct Thing
 {
   std::string place;  // beginning of a message about it
-  Vector3d at;
+  Box box;
 };
 
 /// Examines things by their names; those without a counterpart are ignored.
@@ -31,7 +31,10 @@ void check_pairs(const Scene& scene, const std::map<std::string, Thing>& things)
     if (other == things.end())
       continue;
     ++pairs;
-    const Vector3d apart = thing.at - other->second.at;
+    const Box& there = other->second.box;
+    const Vector3d apart = thing.box.center() - there.center();
+    if (thing.box.min() == there.min() && thing.box.max() == there.max())
+      throw failure("{} lies where '{}' does; give each its own data", thing.place, other->first);
     if (apart.norm() < least_distance || left.dot(apart) > -clear * apart.norm())
       continue;
     if (exchanged++ == 0)
@@ -54,12 +57,12 @@ void check_sides(const Scene& scene, const PreparedSurfaces& surfaces)
   for (const Surface& given : scene.surfaces)
     for (const auto& surface : surfaces)
       if (given.name == surface->name())
-        things[given.name] = { place_in_scene(scene, "surface", given), surface->box().center() };
+        things[given.name] = { place_in_scene(scene, "surface", given), surface->box() };
   check_pairs(scene, things);
   things.clear();
   for (const SceneLandmark& landmark : scene.landmarks)
     if (!landmark.head)
-      things[landmark.name] = { place_in_scene(scene, "landmark", landmark), to_vector(landmark.position) };
+      things[landmark.name] = { place_in_scene(scene, "landmark", landmark), Box(to_vector(landmark.position)) };
   check_pairs(scene, things);
 }
 

@@ -27,12 +27,16 @@ struct BakeOptions
 // Throws Error, before a long bake, if its result could not be written.
 void check_output(const BakeOptions& options)
 {
+  if (options.output.empty())
+    throw WrongUsage("--output: must be the path of a model file (.vtkhdf)");
   const std::filesystem::path folder = std::filesystem::absolute(options.output).parent_path();
   std::error_code ignored;
   if (!std::filesystem::is_directory(folder, ignored))
     throw Error(options.output + ": no folder '" + folder.string() + "' to write it in; must exist");
   if (std::filesystem::is_directory(options.output, ignored))
     throw Error(options.output + ": is a folder; must be the path of a model file (.vtkhdf)");
+  if (std::filesystem::exists(options.output, ignored) && !std::filesystem::is_regular_file(options.output, ignored))
+    throw Error(options.output + ": is no regular file; must be the path of a model file (.vtkhdf)");
   if (std::filesystem::equivalent(options.output, options.source.path, ignored))
     throw Error(options.output + ": is the scene itself; must be another file");
 }

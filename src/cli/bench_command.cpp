@@ -167,6 +167,7 @@ void bench_effects(const BenchOptions& options)
     model = std::make_shared<const Model>(obtain_model(options.source));
   if (model && model->muscles.empty())
     throw Error(options.source.path + ": has no muscles; to compare one with all it must have some");
+  end_at_interrupt();
   const auto costs = measure_presence(options.solver, seconds);
   Table table({ "effect", "share [%]", "additional [us]", "spread [us]", "of base step [%]", "of full cost [%]" });
   const auto rounded = [](double x, double unit) { return std::round(x / unit) * unit; };
@@ -196,6 +197,9 @@ void bench(const BenchOptions& options)
     return bench_effects(options);
   if (!options.plot.empty())
     throw WrongUsage("--plot: only with --effects");
+  const auto given =
+      options.source.path.empty() ? nullptr : std::make_shared<const Model>(obtain_model(options.source));
+  end_at_interrupt();
   const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   const int threads = options.solver.threads > 0 ? options.solver.threads : cores;
   fmt::print("this machine {} threads: copies {:.1f} GB/s\n", threads, 1e-9 * copy_bandwidth(threads));
@@ -209,8 +213,8 @@ void bench(const BenchOptions& options)
     const double rate_of_block = bench_model(fmt::format("block {}", edge), block, options, rate);
     rate = rate > 0 ? rate : rate_of_block;
   }
-  if (!options.source.path.empty())
-    bench_model("model", std::make_shared<const Model>(obtain_model(options.source)), options, rate);
+  if (given)
+    bench_model("model", given, options, rate);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -15,11 +16,17 @@ namespace frontalis
 
 // Options that several subcommands share.
 
-/// Declares an option whose value must be above 0.
+/// Declares an option whose value must be a finite number above 0.
 template <class Value>
 CLI::Option* add_positive(CLI::App& command, const std::string& name, Value& value, const std::string& text)
 {
-  return command.add_option(name, value, text)->check(CLI::PositiveNumber);
+  const auto fault = [](const std::string& given)
+  {
+    double number = 0;
+    const bool allowed = CLI::detail::lexical_cast(given, number) && number > 0 && std::isfinite(number);
+    return allowed ? std::string() : given + " is not a finite number above 0";
+  };
+  return command.add_option(name, value, text)->check(fault, "POSITIVE");
 }
 
 /// Declares --backend, whose default is the value of `backend`. `automatic`: whether "auto" is allowed.

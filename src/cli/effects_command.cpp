@@ -109,6 +109,7 @@ void show_effects(const EffectsOptions& options)
     return show_arrays(options);
   check_seconds(options.seconds);
   const auto model = std::make_shared<const Model>(obtain_model(options.source));
+  end_at_interrupt();
   const EffectCosts costs = measure_effects(model, options.solver, step_timer(options.solver, options.seconds));
   if (options.json)
     fmt::print("{}", json_of(*model, costs));

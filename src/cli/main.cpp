@@ -1,35 +1,52 @@
 #include "cli/command.hpp"
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <string>
+#include <vector>
 
 namespace
 {
 
-volatile std::sig_atomic_t requested = 0;
+volatile std::sig_atomic_t requested = 0, ends_at_once = 0;
 
-// The first Ctrl-C or SIGTERM only sets the flag; the second one ends the program at once.
+// The first Ctrl-C or SIGTERM only sets the flag, unless ends_at_once is set; the second one ends the program at once.
 void catch_interrupts()
 {
   struct sigaction action = {};
-  action.sa_handler = [](int) { requested = 1; };
+  action.sa_handler = [](int)
+  {
+    requested = 1;
+    if (ends_at_once != 0)
+      _exit(frontalis::exit_interrupted);
+  };
   action.sa_flags = static_cast<int>(SA_RESETHAND);
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
 }
 
-int report(const char* text, int code)
+int report(const std::string& text, int code)
 {
-  std::fprintf(stderr, "%s\n", text);
+  std::fprintf(stderr, "%s\n", text.c_str());
   return code;
 }
 
 }  // namespace
 
 bool frontalis::interrupt_requested() { return requested != 0; }
+
+void frontalis::end_at_interrupt()
+{
+  ends_at_once = 1;
+  if (interrupt_requested())
+    throw Interrupted();
+}
 
 int main(int argc, char** argv)
 {
@@ -51,6 +68,13 @@ int main(int argc, char** argv)
   frontalis::add_calibrate_command(app);
   frontalis::add_accuracy_command(app);
   frontalis::add_stability_command(app);
+
+  std::vector<std::string> commands;
+  for (const CLI::App* const command : app.get_subcommands([](const CLI::App*) { return true; }))
+    commands.push_back(command->get_name());
+  if (argc > 1 && argv[1][0] != '-' && std::find(commands.begin(), commands.end(), argv[1]) == commands.end())
+    return report(fmt::format("there is no command '{}'; the commands are {}", argv[1], fmt::join(commands, ", ")),
+                  frontalis::exit_wrong_usage);
 
   catch_interrupts();
   try

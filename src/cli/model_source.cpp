@@ -145,17 +145,30 @@ Model bake_scene(const ModelSource& source, BakeSummary* summary)
   std::string of_cache;
   BakeReport report;
   report.measure_muscles = summary != nullptr && summary->whole;
+  const auto print_warnings = [&]
+  {
+    for (const std::string& warning : report.warnings)
+      fmt::print(source.progress, "warning  {}\n", warning);
+  };
   std::optional<Model> model = cached_model(cached, hash, of_cache);
   if (!model)
   {
     Progress progress(source.progress);
-    model = bake_interruptibly(scene, &report,
-                               [&](const std::string& stage, double done) { progress.update(stage, done); });
+    try
+    {
+      model = bake_interruptibly(scene, &report,
+                                 [&](const std::string& stage, double done) { progress.update(stage, done); });
+    }
+    catch (const Error&)
+    {
+      // What is probably a mistake may be the cause.
+      print_warnings();
+      throw;
+    }
     keep_in_cache(*model, cached, of_cache);
   }
   if (summary == nullptr)
-    for (const std::string& warning : report.warnings)
-      fmt::print(source.progress, "warning  {}\n", warning);
+    print_warnings();
   else
   {
     *summary = summary_of(report);

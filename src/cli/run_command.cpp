@@ -124,15 +124,12 @@ void Run::advance(double end)
 // Plays the motion frame by frame. Ctrl-C ends it early.
 void Run::play()
 {
-  const double frame_rate = options.frame_rate > 0 ? options.frame_rate : model.frame_rate;
-  const auto frames = static_cast<int>(std::max(1.0, std::ceil(options.seconds * frame_rate * (1 - 1e-9))));
-  if (!options.movie.empty())
-    movie.emplace(options.movie, frame_rate, model);
+  const auto frames = static_cast<int>(std::max(1.0, std::ceil(options.seconds * options.frame_rate * (1 - 1e-9))));
   const double begin = wall_seconds();
   Progress progress;
   for (int frame = 0; frame <= frames && summary.complete; ++frame)
   {
-    advance_to(frame == frames ? options.seconds : frame / frame_rate);
+    advance_to(frame == frames ? options.seconds : frame / options.frame_rate);
     observe();
     if (guard)
       summary.guard = guard->counts();
@@ -270,6 +267,8 @@ void simulate(RunOptions& options)
     off = off.with(effect_from_name(name));
 
   const auto model = std::make_shared<const Model>(obtain_model(options.source));
+  if (options.frame_rate <= 0)
+    options.frame_rate = model->frame_rate;
   ControlCurve curve = options.demo ? demo_of(options, *model) : curve_of(options, *model);
   std::optional<FrameFolder> folder;
   if (!options.frames.empty())
@@ -278,6 +277,8 @@ void simulate(RunOptions& options)
   const std::unique_ptr<Solver> solver = make_solver(model, options.solver);
   switch_off(*solver, off);
   Run run{ options, *model, std::move(curve), *solver, std::move(folder) };
+  if (!options.movie.empty())
+    run.movie.emplace(options.movie, options.frame_rate, *model);
   run.fine_lines = FineLines::make(model, false);
   RunSummary& summary = run.summary;
   if (!options.plot.empty())
@@ -304,7 +305,7 @@ void simulate(RunOptions& options)
     // The result so far is written before the error is reported.
     summary.complete = false;
     summary.failure = error.what();
-    if (run.folder)
+    if (run.folder && summary.frames > 0)
       run.folder->finish(json_of(*model, summary));
     throw;
   }

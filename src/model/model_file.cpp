@@ -87,8 +87,14 @@ Model read(const std::string& path, const std::string* scene_hash)
 
 }  // namespace
 
-void write_model(const Model& model, const std::string& path)
+void write_model(const Model& model, const std::string& name)
 {
+  // A link stays, and its target is replaced.
+  std::error_code missing;
+  const std::filesystem::path target = std::filesystem::canonical(name, missing);
+  const std::string path = missing ? name : target.string();
+  if (!missing && !std::filesystem::is_regular_file(target))
+    throw Error("model file " + name + ": is there already and is no regular file; give another name");
   const std::string partial = path + ".partial-" + std::to_string(::getpid());
   try
   {

@@ -38,12 +38,13 @@ void FaceInputs::start(const std::shared_ptr<const Model>& model, const InputPar
   for (const BoneFrame& followed : parameters.bone_frames)
     if (std::find(model->bones.begin(), model->bones.end(), followed.bone) == model->bones.end())
       throw Error(fmt::format("~bone_frames: no bone is called '{}'; the bones are {}", followed.bone,
-                              fmt::join(model->bones, ", ")));
+                              model->bones.empty() ? "none" : fmt::format("{}", fmt::join(model->bones, ", "))));
   auto follower = std::make_unique<BoneFollower>(parameters.bone_frames, face_frame, parameters.bone_speed,
                                                  parameters.stamp_tolerance);
   auto demo = std::make_unique<DemoPlayer>(model);
   const std::lock_guard<std::mutex> lock(mutex_);
   model_ = model;
+  face_frame_ = face_frame;
   parameters_ = parameters;
   demo_ = std::move(demo);
   demo_playing_ = parameters.demo && !demo_->empty();
@@ -61,6 +62,7 @@ void FaceInputs::configure(const InputParameters& parameters)
 {
   const std::lock_guard<std::mutex> lock(mutex_);
   parameters_ = parameters;
+  silent_ = silent_ && parameters.command_timeout > 0;
 }
 
 void FaceInputs::reset(Runner& running)

@@ -21,8 +21,22 @@ namespace
 constexpr double play_period = 1.0 / 30;     // time between two updates of changing activations [s]
 constexpr double repetition_period = 0.5;    // a face that stands still repeats its frame after this time [s]
 constexpr double diagnostics_period = 1.0;   // time between two diagnostic messages without ~diagnostic_period [s]
+constexpr double longest_period = 1e6;       // ROS cannot count longer durations [s]
 constexpr double stalled_after = 3.0;        // diagnostics warn if there is no frame for this time [s]
 constexpr double speed_settled_after = 3.0;  // the real-time factor is logged after this time [s]
+
+// Reads ~diagnostic_period. Replaces a bad value, because diagnostic_updater reads the parameter too and would end the
+// node.
+double read_diagnostic_period(const ros::NodeHandle& handle, const std::string& name)
+{
+  const double period = handle.param("diagnostic_period", diagnostics_period);
+  if (period >= 0 && period <= longest_period)
+    return std::max(period, 0.01);
+  ROS_ERROR_STREAM(name << ": ~diagnostic_period is " << period << "; allowed are 0 to " << longest_period << " s; "
+                        << diagnostics_period << " s is taken");
+  handle.setParam("diagnostic_period", diagnostics_period);
+  return diagnostics_period;
+}
 
 }  // namespace
 
@@ -30,6 +44,7 @@ FaceNode::FaceNode(const ros::NodeHandle& handle, const ros::NodeHandle& private
     : handle_(handle),
       private_handle_(private_handle),
       name_(name),
+      diagnostic_period_(read_diagnostic_period(private_handle, name)),
       updater_(handle, private_handle, name),
       publisher_(private_handle),
       loading_frame_(private_handle.param<std::string>("parent_frame", "map")),
@@ -61,10 +76,8 @@ FaceNode::FaceNode(const ros::NodeHandle& handle, const ros::NodeHandle& private
 
   frame_timer_ = private_handle_.createWallTimer(ros::WallDuration(play_period),
                                                  [this](const ros::WallTimerEvent&) { repeat_frame_and_play(); });
-  const double period = private_handle_.param("diagnostic_period", diagnostics_period);
-  diagnostics_timer_ = private_handle_.createWallTimer(
-      ros::WallDuration(std::isfinite(period) ? std::max(period, 0.01) : diagnostics_period),
-      [this](const ros::WallTimerEvent&) { updater_.force_update(); });
+  diagnostics_timer_ = private_handle_.createWallTimer(ros::WallDuration(diagnostic_period_),
+                                                       [this](const ros::WallTimerEvent&) { updater_.force_update(); });
   loader_ = std::thread([this] { load(); });
 }
 

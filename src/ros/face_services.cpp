@@ -207,6 +207,10 @@ void FaceNode::on_config(FaceConfig& config, std::uint32_t)
 
 void FaceNode::apply_config(Runner& running, const FaceConfig& config)
 {
+  for (const double number : { config.frame_rate, config.colour_range, config.damping, config.command_timeout,
+                               config.relax_time, config.stamp_tolerance, config.real_time_factor_warning })
+    if (!std::isfinite(number))
+      throw Error(fmt::format("found {}; every number must be finite", number));
   const SkinColour colour = skin_colour_from_name(config.skin_colour);
   const SkinField field = skin_field_from_name(config.skin_field);
   std::set<std::string> off;

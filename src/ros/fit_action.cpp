@@ -9,6 +9,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <set>
 
 namespace frontalis
 {
@@ -16,6 +17,7 @@ namespace
 {
 
 constexpr double millimetres = 1e3;
+constexpr double farthest = 1e3;  // largest coordinate of a target [m]
 
 void check_length(const std::string& field, std::size_t found, std::size_t wanted, const std::string& of)
 {
@@ -27,6 +29,22 @@ void check_length(const std::string& field, std::size_t found, std::size_t wante
 std::string request_of(const FitActivationGoal& goal)
 {
   check_length("target", goal.target.size(), goal.landmark.size(), "landmark");
+  std::set<std::string> named;
+  bool any = false;
+  for (std::size_t l = 0; l < goal.landmark.size(); ++l)
+  {
+    if (!named.insert(goal.landmark[l]).second)
+      throw Error("landmark '" + goal.landmark[l] + "' is named twice");
+    for (const double x : { goal.target[l].x, goal.target[l].y, goal.target[l].z })
+    {
+      any = any || !std::isnan(x);
+      if (std::isfinite(x) && std::abs(x) > farthest)
+        throw Error(fmt::format("target of landmark '{}': found {} m; allowed are -{} to {} m", goal.landmark[l], x,
+                                farthest, farthest));
+    }
+  }
+  if (!any)
+    throw Error("there are no targets: every coordinate is missing");
   YAML::Emitter text;
   const auto coordinate = [&](double value)
   {

@@ -249,8 +249,11 @@ void FaceInputs::on_expression(const Expression& message)
          check_duration("release", message.release);
          const Controls rest = rest_controls(*model_);
          Controls sum = rest;
+         std::set<std::string> named;
          for (std::size_t entry = 0; entry < message.name.size(); ++entry)
          {
+           if (!named.insert(message.name[entry]).second)
+             throw Error("expression '" + message.name[entry] + "' is named twice");
            const double share = intensity.empty() ? 1 : intensity[entry];
            if (!(share >= 0 && share <= 1))
              throw Error(fmt::format("intensity of '{}' is {}; must be from 0 to 1", message.name[entry], share));
@@ -271,7 +274,9 @@ void FaceInputs::on_bone_pose(const geometry_msgs::TransformStamped& message)
   take("bone_pose", message.header.stamp,
        [&](Runner& running, double now)
        {
-         const std::string& bone = message.child_frame_id;
+         const std::string &bone = message.child_frame_id, &frame = message.header.frame_id;
+         if (!frame.empty() && frame != face_frame_)
+           throw Error(fmt::format("its frame is '{}'; must be '{}' or empty", frame, face_frame_));
          for (const BoneFrame& followed : parameters_.bone_frames)
            if (followed.bone == bone)
              throw Error("bone '" + bone + "' follows the frame '" + followed.frame + "' (~bone_frames)");

@@ -7,6 +7,7 @@
 #include <ros/package.h>
 
 #include <algorithm>
+#include <cctype>
 
 namespace frontalis
 {
@@ -93,6 +94,9 @@ FaceParameters read_parameters(const ros::NodeHandle& private_handle)
   if (!part.empty() && !(part.size() == 4 && part[0] < part[2] && part[1] < part[3]))
     reader.add_fault("wrinkles_in", fmt::format("found {}; allowed is {}", fmt::join(part, ", "), four_numbers));
   out.face_id = reader.text("face_id", "");
+  const auto in_names = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
+  if (!std::all_of(out.face_id.begin(), out.face_id.end(), in_names))
+    reader.add_fault("face_id", fmt::format("found '{}'; allowed are letters, digits and '_'", out.face_id));
   out.parent_frame = reader.text("parent_frame", "map");
   out.inputs.demo = reader.value("demo", false, "true or false");
   const auto seconds = [&](const char* key, double fallback)

@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 
@@ -180,6 +181,47 @@ TEST_F(Import, ASmallCrossingIsDataAndALargeOneAnError)
   ASSERT_FALSE(surface.findings.empty());
   EXPECT_NE(surface.findings.back().find("pairs of triangles cross"), std::string::npos) << surface.findings.back();
   EXPECT_THROW(load(together(sphere({ 0, 0, 0 }, 10), sphere({ 14, 0, 0 }, 10))), Error);
+}
+
+TEST_F(Import, HolesThatTouchAtACornerAreHoles)
+{
+  TriangleMesh mesh = sphere({ 0, 0, 0 }, 10);
+  const auto corner = mesh.triangles.front()[0];
+  std::vector<std::size_t> around;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    if (std::count(mesh.triangles[t].begin(), mesh.triangles[t].end(), corner) > 0)
+      around.push_back(t);
+  const auto touches = [&](std::size_t a, std::size_t b)
+  {
+    const auto& of_b = mesh.triangles[b];
+    return std::count_if(mesh.triangles[a].begin(), mesh.triangles[a].end(),
+                         [&](std::int32_t v) { return std::count(of_b.begin(), of_b.end(), v) > 0; }) == 1;
+  };
+  const auto other = std::find_if(around.begin(), around.end(), [&](auto t) { return touches(around.front(), t); });
+  ASSERT_NE(other, around.end());
+  mesh.triangles.erase(mesh.triangles.begin() + static_cast<std::ptrdiff_t>(*other));
+  mesh.triangles.erase(mesh.triangles.begin() + static_cast<std::ptrdiff_t>(around.front()));
+  const LoadedSurface surface = load(mesh);
+  ASSERT_EQ(surface.findings.size(), 1u) << surface.findings.front();
+  EXPECT_EQ(surface.findings[0].find("surface 'body': is open"), 0u) << surface.findings[0];
+}
+
+TEST(MeshFaults, FoldsOverACommonCornerOrEdgeAreCrossings)
+{
+  // Copies of corners stand for those that the half-edge structure makes where holes touch.
+  const auto crossings = [](const Triangle& second)
+  {
+    TriangleMesh mesh;
+    mesh.vertices = { { 0, 0, 0 }, { 10, 0, 0 }, { 0, 10, 0 }, { 0, 0, 0 },   { 10, 0, 0 }, { 0, -10, 0 },
+                      { 5, 5, 5 }, { 3, 3, -2 }, { 2, 2, 2 },  { 2, 8, 0.5 }, { 4, 1, 0 } };
+    mesh.triangles = { { 0, 1, 2 }, second };
+    return find_mesh_faults(mesh).crossings.count;
+  };
+  EXPECT_EQ(crossings({ 3, 5, 6 }), 0u) << "a common corner";
+  EXPECT_EQ(crossings({ 3, 7, 8 }), 1u) << "a common corner, through the other triangle";
+  EXPECT_EQ(crossings({ 3, 4, 5 }), 0u) << "a common edge in the same plane";
+  EXPECT_EQ(crossings({ 3, 4, 6 }), 0u) << "a common edge";
+  EXPECT_EQ(crossings({ 3, 4, 10 }), 1u) << "a common edge, over the other triangle";
 }
 
 TEST(MeshFaults, CountsSliversAndCrossings)

@@ -187,21 +187,25 @@ TEST(Voxelise, WarnsOfMusclesMostlyClippedAndOfSurfacesFarFromTheTissue)
   scene.muscles = { { "a", "a", { 2, 0, 0 }, 0.3e6, false, true, 1 } };
   BakeReport report;
   bake(scene, &report);
-  ASSERT_EQ(report.warnings.size(), 2u);
+  ASSERT_EQ(report.warnings.size(), 3u);
   EXPECT_EQ(
       report.warnings[0].find("surface 'bone' bounds no tissue: it spans (-2.5, -2.5, 37.5) to (2.5, 2.5, 42.5) mm"),
       0u)
       << report.warnings[0];
   EXPECT_EQ(report.warnings[1].find("muscle 'a' lies in the tissue with 30 % of its volume"), 0u) << report.warnings[1];
+  EXPECT_NE(report.warnings[2].find("no node is held or slides"), std::string::npos) << report.warnings[2];
+  scene.surfaces[2] = box_surface("bone", { 2e-3, 0, 0 }, { 5e-6, 5e-6, 5e-6 });
+  bake(scene, &report);
+  EXPECT_EQ(report.warnings[0].find("surface 'bone' is smaller than a voxel: it spans"), 0u) << report.warnings[0];
   scene.surfaces[1] = box_surface("a", { 4e-3, 0, 0 }, { 20e-3, 4.6e-3, 4.6e-3 });
   scene.surfaces[2] = box_surface("bone", { 0, 0, 8e-3 }, { 5e-3, 5e-3, 5e-3 });
   bake(scene, &report);
-  EXPECT_TRUE(report.warnings.empty());
+  EXPECT_EQ(report.warnings.size(), 1u);
 
   scene.materials[0].density = 1.1;
   scene.muscles[0].cross_section = 60;
   bake(scene, &report);
-  ASSERT_EQ(report.warnings.size(), 2u);
+  ASSERT_EQ(report.warnings.size(), 3u);
   EXPECT_NE(report.warnings[0].find("density is 1.1 kg/m3, expected 100 to 20000"), std::string::npos);
   EXPECT_NE(report.warnings[1].find("muscle 'a': cross_section is 60 m2"), std::string::npos);
 }

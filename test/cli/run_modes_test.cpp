@@ -155,6 +155,15 @@ TEST_F(RunModes, a_movie_has_a_picture_per_frame)
   EXPECT_FALSE(std::filesystem::exists(folder / "it's.gif.frames"));
 }
 
+TEST_F(RunModes, a_movie_that_cannot_be_made_is_an_error_before_the_motion)
+{
+  const ProgramResult result = run_program({ "run", std::string(FRONTALIS_SOURCE_DIRECTORY) + "/test/ros/small.yaml",
+                                             "--expression", "shorten", "--seconds", "0.1", "--frame-rate", "30",
+                                             "--frames", folder / "frames", "--movie", folder / "a.gif" });
+  EXPECT_EQ(result.code, 1);
+  expect_contains(result.errors, "a GIF cannot have 30 frames per second");
+}
+
 TEST_F(RunModes, the_ledger_of_a_shortening_bar_closes)
 {
   const ProgramResult result =

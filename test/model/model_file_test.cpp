@@ -4,6 +4,7 @@
 #include "model/model_block.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 #include <fstream>
@@ -237,6 +238,19 @@ TEST_F(ModelFile, NothingIsLeftWhenWritingFails)
   const std::string before = text_of(path("a.vtkhdf"));
   EXPECT_THROW(write_model(bad, path("a.vtkhdf")), Error);
   EXPECT_TRUE(before == text_of(path("a.vtkhdf")));
+}
+
+TEST_F(ModelFile, LinksStayAndWhatIsNoRegularFileIsNotReplaced)
+{
+  const Model model = full_block(1, 1, 1);
+  write_model(model, path("model.vtkhdf"));
+  fs::create_symlink("model.vtkhdf", path("link.vtkhdf"));
+  write_model(full_block(2, 1, 1), path("link.vtkhdf"));
+  EXPECT_TRUE(fs::is_symlink(path("link.vtkhdf")));
+  EXPECT_EQ(read_model(path("model.vtkhdf")).voxels.size(), 2u);
+  ASSERT_EQ(::mkfifo(path("pipe").c_str(), 0600), 0);
+  EXPECT_THROW(write_model(model, path("pipe")), Error);
+  EXPECT_TRUE(fs::is_fifo(path("pipe")));
 }
 
 TEST_F(ModelFile, AMillionVoxelsAreReadBack)

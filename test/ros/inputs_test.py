@@ -189,6 +189,14 @@ class Inputs(unittest.TestCase):
         self.send("joint_trajectory", trajectory([RIGHT], (1, (1,))))
         self.check(self.step(1), 0.8, 1)
         self.check(self.step(0.5), 0.4, 0.5)
+        wait(lambda: "no command" in self.face.diagnostics[0].message, "a diagnostic")
+        self.config.update_configuration({"command_timeout": 0})
+        wait(lambda: "no command" not in self.face.diagnostics[0].message, "the end of the diagnostic")
+
+    def test_numbers_that_are_not_finite_do_not_configure(self):
+        for name in ("frame_rate", "relax_time", "command_timeout", "stamp_tolerance", "real_time_factor_warning"):
+            before = self.config.get_configuration()[name]
+            self.assertEqual(self.config.update_configuration({name: math.nan})[name], before)
 
     def test_stamps_that_are_stale_or_of_the_future_are_refused(self):
         self.config.update_configuration({"stamp_tolerance": 60})
@@ -254,6 +262,7 @@ class Inputs(unittest.TestCase):
                 Expression(name=["raise"], onset=-1),
                 Expression(name=["raise"], hold=math.inf),
                 Expression(name=["raise"] * 100),
+                Expression(name=["raise"] * 2),
             ],
             "bone_pose": [TransformStamped(child_frame_id="jaw")],
         }

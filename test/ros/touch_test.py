@@ -108,6 +108,12 @@ class Touch(unittest.TestCase):
         message = TransformStamped(child_frame_id="finger")
         message.transform.rotation.w = 1
 
+        # a pose in another frame is refused
+        message.header.frame_id = "map"
+        poses.publish(message)
+        wait(lambda: "'map'" in (self.face.diagnostic("latest refusal on ~bone_pose") or ""), "the refusal")
+        message.header.frame_id = "face"
+
         def parted():
             poses.publish(message)
             wrench, frame = self.press(0.2)

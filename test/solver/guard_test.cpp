@@ -275,27 +275,6 @@ TEST_P(Guarded, finds_hourglass_energy_too_long_steps_and_an_unbalanced_ledger)
   }
 }
 
-// A frame may end long before the next regular check.
-TEST_P(Guarded, checks_at_once_when_the_time_step_falls)
-{
-  struct Shortened : test::WrappedSolver
-  {
-    using WrappedSolver::WrappedSolver;
-    double share = 1;
-    double time_step() const override { return share * WrappedSolver::time_step(); }
-  };
-  const auto model = std::make_shared<const Model>(test::scene_of(test::contraction));
-  Shortened solver(make_solver(model, { GetParam(), 2 }));
-  Guard guard(solver, model, { 100000 });
-  const double part = 10 * solver.time_step();
-  for (const auto& [share, checks] : { std::pair<double, int>{ 1, 0 }, { 0.6, 0 }, { 0.4, 1 }, { 0.4, 1 } })
-  {
-    solver.share = share;
-    guard.advance(part, full(solver, 0));
-    EXPECT_EQ(guard.counts().checks, checks) << share;
-  }
-}
-
 // The guard repeats the motion before the failure with the controls of that time, not with later ones.
 TEST_P(Guarded, looks_for_the_fault_on_the_way_that_was_gone)
 {

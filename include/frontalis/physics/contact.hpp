@@ -58,15 +58,23 @@ struct Touch
   T lost;    ///< energy dissipated by friction in this step [J]
 };
 
+/// Force of a frictionless body on a point inside it, in the body's frame [N]: minus the gradient of
+/// 1/2 stiffness value^2, so that such a body adds no energy. `stiffness`: of the point [N/m].
+template <class T>
+FRONTALIS_LAW Vec3<T> push(const FieldValue<T>& field, const T& stiffness)
+{
+  return (stiffness * -field.value) * field.gradient;
+}
+
 /// Contact and Coulomb friction of a point inside a body (field.value < 0). `x`: position in the body's frame [m];
 /// `grip`: the grip that was returned in the previous step or, when contact begins, an anchor at x with the forces that
 /// let_go() left; `stiffness`: of the point [N/m]; `friction`: Coulomb's coefficient; `response`: friction_response().
 /// Friction needs this delay, because elastic bodies flutter where they slide if friction follows the normal force at
 /// once.
 ///
-/// The normal force is the gradient of 1/2 stiffness value^2, so that a frictionless body adds no energy. Friction is
-/// the tangential stiffness times the displacement from the anchor, returned to Coulomb's cone (Simo & Laursen, An
-/// augmented Lagrangian treatment of contact problems involving friction, Computers & Structures 42(1), 1992).
+/// The normal force is that of push(). Friction is the tangential stiffness times the displacement from the anchor,
+/// returned to Coulomb's cone (Simo & Laursen, An augmented Lagrangian treatment of contact problems involving
+/// friction, Computers & Structures 42(1), 1992).
 template <class T>
 FRONTALIS_LAW Touch<T> touch(const FieldValue<T>& field, const Vec3<T>& x, const Grip<T>& grip, const T& stiffness,
                              const T& friction, const T& response)
@@ -85,7 +93,7 @@ FRONTALIS_LAW Touch<T> touch(const FieldValue<T>& field, const Vec3<T>& x, const
   const T kept = N::select(slips, allowed / N::max(trial, N::of(1e-30)), N::of(1));
   const Vec3<T> left = kept * along;
   const Vec3<T> moved = x - left;
-  return { pressed * field.gradient - along_stiffness * left,
+  return { push(field, stiffness) - along_stiffness * left,
            { { N::select(slips, moved.x, grip.anchor.x), N::select(slips, moved.y, grip.anchor.y),
                N::select(slips, moved.z, grip.anchor.z) },
              normal_force,

@@ -102,6 +102,7 @@ private:
 
   mutable std::mutex mutex_;  ///< protects all members below; held while the runner's controls are set
   std::shared_ptr<const Model> model_;
+  std::string face_frame_;
   InputParameters parameters_;
   std::unique_ptr<DemoPlayer> demo_;
   bool demo_playing_ = false;

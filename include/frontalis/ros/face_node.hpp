@@ -84,6 +84,7 @@ private:
 
   ros::NodeHandle handle_, private_handle_;
   const std::string name_;
+  const double diagnostic_period_;  ///< [s]; read before updater_, which reads the parameter too
   diagnostic_updater::Updater updater_;
 
   mutable std::mutex runner_mutex_;  ///< protects the members up to parameters_

@@ -7,45 +7,12 @@
 #include "bake/shapes/head/head.hpp"
 #include "bake/shapes/muscle_net.hpp"
 
-#include <assimp/Importer.hpp>
-#include <assimp/config.h>
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
-
 #include <algorithm>
-#include <cctype>
-#include <filesystem>
-#include <fstream>
 
 namespace frontalis
 {
 namespace
 {
-
-void append(const aiMesh& part, const aiMatrix4x4& transform, double unit, TriangleMesh& mesh)
-{
-  const auto base = static_cast<std::int32_t>(mesh.vertices.size());
-  for (unsigned v = 0; v < part.mNumVertices; ++v)
-  {
-    const aiVector3D p = transform * part.mVertices[v];
-    mesh.vertices.push_back(to_array(unit * Vector3d(p.x, p.y, p.z)));
-  }
-  for (unsigned f = 0; f < part.mNumFaces; ++f)
-    if (const aiFace& face = part.mFaces[f]; face.mNumIndices == 3)
-    {
-      const auto corner = [&](unsigned c) { return base + static_cast<std::int32_t>(face.mIndices[c]); };
-      mesh.triangles.push_back({ corner(0), corner(1), corner(2) });
-    }
-}
-
-void append(const aiScene& scene, const aiNode& node, const aiMatrix4x4& parent, double unit, TriangleMesh& mesh)
-{
-  const aiMatrix4x4 transform = parent * node.mTransformation;
-  for (unsigned m = 0; m < node.mNumMeshes; ++m)
-    append(*scene.mMeshes[node.mMeshes[m]], transform, unit, mesh);
-  for (unsigned c = 0; c < node.mNumChildren; ++c)
-    append(scene, *node.mChildren[c], transform, unit, mesh);
-}
 
 // Limits above which a surface is refused as self-intersecting: the fraction of the enclosed volume that is enclosed
 // twice or inside-out; the depth of such a region divided by the surface's size; for an open surface, the extent of a
@@ -220,59 +187,7 @@ void describe(const MeshFaults& faults, double unit, const Found& found)
   found(text);
 }
 
-/// What is wrong with a binary STL file that ends too early, or an empty text.
-std::string cut_off_stl(const std::string& file)
-{
-  std::ifstream stream(file, std::ios::binary);
-  std::array<char, 84> header{};  // a text of 80 bytes, then the number of triangles, the lowest byte first
-  if (!stream.read(header.data(), header.size()) || std::string(header.data(), 5) == "solid")
-    return {};
-  double triangles = 0;
-  for (std::size_t byte = 84; byte-- > 80;)
-    triangles = 256 * triangles + static_cast<unsigned char>(header[byte]);
-  stream.seekg(0, std::ios::end);
-  const auto bytes = static_cast<double>(stream.tellg()), expected = 84 + 50 * triangles;
-  if (bytes >= expected)
-    return {};
-  return fmt::format(
-      "its header announces {:.0f} triangles, as STL {:.0f} bytes, but it has {:.0f}: it was cut off, or is "
-      "no STL file; copy or export it again",
-      triangles, expected, bytes);
-}
-
 }  // namespace
-
-TriangleMesh import_mesh(const std::string& file, double unit)
-{
-  std::error_code code;
-  if (!std::filesystem::is_regular_file(file, code))
-    throw Error("mesh file " + file + ": there is no such file");
-  Assimp::Importer importer;
-  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-  const aiScene* scene = importer.ReadFile(file, aiProcess_Triangulate | aiProcess_SortByPType);
-  const std::string no_triangles = ": has no triangles; it must hold a surface, not points or lines";
-  if (scene == nullptr && std::string(importer.GetErrorString()).find("No meshes remaining") != std::string::npos)
-    throw Error("mesh file " + file + no_triangles);
-  std::string extension = std::filesystem::path(file).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
-  if (const std::string cut_off = scene == nullptr && extension == ".stl" ? cut_off_stl(file) : ""; !cut_off.empty())
-    throw Error("mesh file " + file + ": " + cut_off);
-  if (scene == nullptr)
-    throw Error("mesh file " + file + ": cannot be read as a mesh (" + importer.GetErrorString() +
-                "); it must hold triangles or quads, for example as OBJ, STL or PLY");
-  TriangleMesh mesh;
-  if (scene->mRootNode != nullptr)
-    append(*scene, *scene->mRootNode, aiMatrix4x4(), unit, mesh);
-  if (mesh.triangles.empty())
-    throw Error("mesh file " + file + no_triangles);
-  for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
-    if (!to_vector(mesh.vertices[v]).allFinite())
-      throw failure(
-          "mesh file {}: vertex {} has a coordinate that is infinite or not a number; every coordinate must be finite",
-          file, v);
-  return mesh;
-}
 
 LoadedSurface load_surface(const Surface& surface, double unit, double voxel)
 {

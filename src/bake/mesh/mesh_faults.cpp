@@ -10,6 +10,7 @@
 
 #include <boost/pending/disjoint_sets.hpp>
 
+#include <algorithm>
 #include <iterator>
 #include <set>
 #include <utility>
@@ -107,10 +108,52 @@ void find_pieces(HalfEdgeMesh& mesh, MeshFaults& faults)
     faults.piece.push_back(static_cast<std::int32_t>(piece[face]));
 }
 
+/// Whether two triangles only touch at corners, of which the half-edge structure has copies: where holes or bodies meet
+/// in a corner or an edge.
+bool only_touch(const HalfEdgeMesh& mesh, Face a, Face b)
+{
+  using Points = std::vector<Kernel::Point_3>;
+  const auto points_of = [&mesh](Face face)
+  {
+    Points points;
+    for (const auto v : CGAL::vertices_around_face(mesh.halfedge(face), mesh))
+      points.push_back(mesh.point(v));
+    return points;
+  };
+  // Turns the corners so that those which are no corners of the other triangle come last.
+  const auto shared_first = [](Points& points, const Points& others)
+  {
+    const auto is_shared = [&](const Kernel::Point_3& p)
+    { return std::find(others.begin(), others.end(), p) != others.end(); };
+    return std::stable_partition(points.begin(), points.end(), is_shared) - points.begin();
+  };
+  Points of_a = points_of(a), of_b = points_of(b);
+  const Points all_of_a = of_a;
+  const auto shared = shared_first(of_a, of_b);
+  shared_first(of_b, all_of_a);
+  if (shared == 0)
+    return false;
+  if (shared == 1)
+  {
+    const auto crosses = [](const Points& edge, const Points& triangle)
+    {
+      return CGAL::do_intersect(Kernel::Segment_3(edge[1], edge[2]),
+                                Kernel::Triangle_3(triangle[0], triangle[1], triangle[2]));
+    };
+    return !crosses(of_a, of_b) && !crosses(of_b, of_a);
+  }
+  // Two triangles with a common edge overlap only if they lie in one plane, on the same side of the edge.
+  return shared == 3 || !CGAL::coplanar(of_a[0], of_a[1], of_a[2], of_b[2]) ||
+         CGAL::coplanar_orientation(of_a[0], of_a[1], of_a[2], of_b[2]) == CGAL::NEGATIVE;
+}
+
 void find_crossings(const HalfEdgeMesh& mesh, MeshFaults& faults)
 {
   std::vector<std::pair<Face, Face>> pairs;
   processing::self_intersections(mesh, std::back_inserter(pairs));
+  pairs.erase(std::remove_if(pairs.begin(), pairs.end(),
+                             [&](const auto& pair) { return only_touch(mesh, pair.first, pair.second); }),
+              pairs.end());
   faults.crossings.count = pairs.size();
   if (pairs.empty())
     return;

@@ -256,6 +256,24 @@ BoundMesh bind_mesh(const TriangleMesh& whole, const Region& crop, const LocalFr
   return bind_mesh(whole, crop, frame, PointBinder(model, frame, extrapolation), monitor);
 }
 
+namespace
+{
+
+/// Tells that a point lies inside a surface that bounds the tissue from within, such as a bone that pokes through the
+/// skin; otherwise returns an empty text.
+std::string text_of_body_around(const Scene& scene, const PreparedSurfaces& surfaces, const Vector3d& point)
+{
+  for (const Volume& volume : scene.volumes)
+    for (const std::string& name : volume.outside)
+      for (const auto& surface : surfaces)
+        if (volume.tissue && surface->name() == name &&
+            surface->signed_distance(point, surface->tree().closest(point)) < 0)
+          return fmt::format(" and lies inside of surface '{}', which may be misplaced", name);
+  return "";
+}
+
+}  // namespace
+
 void bind_surfaces(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,
                    BakeMonitor& monitor)
 {
@@ -277,9 +295,9 @@ void bind_surfaces(const Scene& scene, const PreparedSurfaces& surfaces, const L
     if (bound.too_far > 0)
       throw failure(
           "{}: skin: {} of {} triangles of surface '{}' in the crop have a vertex that no voxel can carry, for example "
-          "at {}: it is farther than {} from the tissue; crop the skin to the tissue, or raise its 'extrapolation'",
+          "at {}: it is farther than {} from the tissue{}; crop the skin to the tissue, or raise its 'extrapolation'",
           scene.file, bound.too_far, bound.triangles, scene.skin.surface, place_text(bound.unbound, scene.unit),
-          length_text(extrapolation, scene.unit));
+          length_text(extrapolation, scene.unit), text_of_body_around(scene, surfaces, bound.unbound));
     model.skin = std::move(bound.mesh);
     model.skin_binding = std::move(bound.binding);
   }

@@ -175,10 +175,15 @@ void BodyContact<Real>::find_force(std::size_t p, const Real* const u[3], const 
   due_[p] = 0;
   if (sampled && value.value < 0)
   {
-    const auto touch = physics::touch<double>(value, x, grip_at(p, x), stiffness, contact.friction, response);
+    if (contact.friction > 0)
+    {
+      const auto touch = physics::touch<double>(value, x, grip_at(p, x), stiffness, contact.friction, response);
+      grip = touch.grip;
+      forces_[p] = { pose.turned(touch.force), arm, touch.lost };
+    }
+    else
+      forces_[p] = { pose.turned(physics::push(value, stiffness)), arm, 0 };
     touches_[p] = Touching::yes;
-    grip = touch.grip;
-    forces_[p] = { pose.turned(touch.force), arm, touch.lost };
     return;
   }
   forces_[p] = { { 0, 0, 0 }, arm, physics::let_go<double>(grip, stiffness, response) };

@@ -314,11 +314,13 @@ bool Guard::advance(double seconds, const Controls& target, const std::function<
     const double left = end - g.solver.time();
     const double part = static_cast<double>(g.checked_at + g.settings.interval - g.steps()) * g.solver.time_step();
     done = part >= left;
+    // If the time step falls within the part, its check is not put off to the end.
+    const auto part_goes_on = [&] { return goes_on() && g.steps() - g.checked_at < 2 * g.settings.interval; };
     const auto go = [&]
     {
       const Controls to = done ? target : interpolate(g.solver.controls(), target, part / left);
       const std::vector<RigidTransform> from = g.solver.controls().bone;
-      g.solver.advance(done ? left : part, to, goes_on);
+      done = g.solver.advance(done ? left : part, to, part_goes_on) && done;
       for (std::size_t m = 0; m < to.activation.size(); ++m)
         g.activation[m] = std::max({ g.activation[m], to.activation[m], g.solver.activation()[m] });
       for (std::size_t b = 0; b < to.bone.size(); ++b)

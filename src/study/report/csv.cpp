@@ -32,6 +32,9 @@ CsvReader::CsvReader(std::string path) : path_(std::move(path)), file_(path_)
   std::string line;
   if (!std::getline(file_, line))
     throw Error(path_ + ": cannot be read, or is empty");
+  // Spreadsheets begin a file with a byte-order mark.
+  if (line.rfind("\xef\xbb\xbf", 0) == 0)
+    line.erase(0, 3);
   header_ = csv_fields(line);
 }
 

@@ -137,10 +137,11 @@ void write_manual(const Findings& findings, const std::string& path)
       (summary == texts.end() ? "# Verification" : summary->second.before) +
       "\n\n## All cases\n\n"
       "A check passes when its error is within its bound; figures without a bound are only *shown*. The table says how "
-      "many checks of each case pass, and how much of its bound the check uses that comes closest to it. Errors and "
-      "bounds in % are relative. Long tables are folded: click on their captions.\n\n"
+      "many checks of each case pass, and, in its last column, the largest error of the case as a share of its bound. "
+      "Errors and bounds in % are relative. Long tables are folded: click on their captions.\n\n"
       "    ./dev cli verify --markdown doc/verification.md           # writes this page anew\n\n"
-      "The texts are from verification/text.md. The figures are from one run of this command, or from later runs of "
+      "The texts are from [verification/text.md](verification/text.md). The figures are from one run of this command, "
+      "or from later runs of "
       "single cases, which renewed their sections.\n";
   Table overview({ "case", "checks", "passed", "most of a bound used [%]" });
   std::string sections;

@@ -1,0 +1,161 @@
+#include "bake/mesh/surface.hpp"
+
+#include "bake/messages.hpp"
+
+#include <assimp/Importer.hpp>
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+namespace frontalis
+{
+namespace
+{
+
+void append(const aiMesh& part, const aiMatrix4x4& transform, double unit, TriangleMesh& mesh)
+{
+  const auto base = static_cast<std::int32_t>(mesh.vertices.size());
+  // The product with a matrix would spread a coordinate that is not a number to the others, which say where it is.
+  const bool stays = transform.IsIdentity();
+  for (unsigned v = 0; v < part.mNumVertices; ++v)
+  {
+    const aiVector3D p = stays ? part.mVertices[v] : transform * part.mVertices[v];
+    mesh.vertices.push_back(to_array(unit * Vector3d(p.x, p.y, p.z)));
+  }
+  for (unsigned f = 0; f < part.mNumFaces; ++f)
+    if (const aiFace& face = part.mFaces[f]; face.mNumIndices == 3)
+    {
+      const auto corner = [&](unsigned c) { return base + static_cast<std::int32_t>(face.mIndices[c]); };
+      mesh.triangles.push_back({ corner(0), corner(1), corner(2) });
+    }
+}
+
+void append(const aiScene& scene, const aiNode& node, const aiMatrix4x4& parent, double unit, TriangleMesh& mesh)
+{
+  const aiMatrix4x4 transform = parent * node.mTransformation;
+  for (unsigned m = 0; m < node.mNumMeshes; ++m)
+    append(*scene.mMeshes[node.mMeshes[m]], transform, unit, mesh);
+  for (unsigned c = 0; c < node.mNumChildren; ++c)
+    append(scene, *node.mChildren[c], transform, unit, mesh);
+}
+
+/// What is wrong with a binary STL file that ends too early, or an empty text.
+std::string cut_off_stl(const std::string& file)
+{
+  std::ifstream stream(file, std::ios::binary);
+  std::array<char, 84> header{};  // a text of 80 bytes, then the number of triangles, the lowest byte first
+  if (!stream.read(header.data(), header.size()) || std::string(header.data(), 5) == "solid")
+    return {};
+  double triangles = 0;
+  for (std::size_t byte = 84; byte-- > 80;)
+    triangles = 256 * triangles + static_cast<unsigned char>(header[byte]);
+  stream.seekg(0, std::ios::end);
+  const auto bytes = static_cast<double>(stream.tellg()), expected = 84 + 50 * triangles;
+  if (bytes >= expected)
+    return {};
+  return fmt::format(
+      "its header announces {:.0f} triangles, as STL {:.0f} bytes, but it has {:.0f}: it was cut off, or is "
+      "no STL file; copy or export it again",
+      triangles, expected, bytes);
+}
+
+/// What is wrong with a PLY file of text that ends too early, or an empty text.
+std::string cut_off_ply(const std::string& file)
+{
+  std::ifstream stream(file);
+  double announced = 0, found = 0;
+  bool of_text = false, in_header = true;
+  for (std::string line, word; std::getline(stream, line);)
+  {
+    std::istringstream words(line);
+    if (!in_header && !of_text)
+      return {};
+    if (!(words >> word))
+      continue;
+    found += in_header ? 0 : 1;
+    if (double count = 0; in_header && word == "element" && words >> word >> count)
+      announced += count;
+    of_text = of_text || (in_header && word == "format" && words >> word && word == "ascii");
+    in_header = in_header && word != "end_header";
+  }
+  if (found >= announced)
+    return {};
+  return fmt::format(
+      "its header announces {:.0f} vertices, faces and so on, but it has {:.0f}: it was cut off; copy or "
+      "export it again",
+      announced, found);
+}
+
+/// Throws Error if a face has no corners or one that is not there, which the importers of PLY and OFF do not check.
+void check_faces(const aiScene& scene, const std::string& file)
+{
+  for (unsigned m = 0; m < scene.mNumMeshes; ++m)
+    for (unsigned f = 0; f < scene.mMeshes[m]->mNumFaces; ++f)
+    {
+      const aiFace& face = scene.mMeshes[m]->mFaces[f];
+      const unsigned vertices = scene.mMeshes[m]->mNumVertices;
+      if (face.mNumIndices == 0 || face.mIndices == nullptr)
+        throw failure(
+            "mesh file {}: face {} of {} has no corners: it was cut off or is damaged; copy or export it again", file,
+            f + 1, scene.mMeshes[m]->mNumFaces);
+      if (const unsigned last = *std::max_element(face.mIndices, face.mIndices + face.mNumIndices); last >= vertices)
+        throw failure(
+            "mesh file {}: face {} has corner {}, but there are {} vertices, counted from 0: it was cut off or is "
+            "damaged; copy or export it again",
+            file, f + 1, static_cast<std::int32_t>(last), vertices);
+    }
+}
+
+}  // namespace
+
+TriangleMesh import_mesh(const std::string& file, double unit)
+{
+  std::error_code code;
+  if (!std::filesystem::is_regular_file(file, code))
+    throw Error("mesh file " + file + ": there is no such file");
+  std::string extension = std::filesystem::path(file).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  const auto refuse_cut_off = [&](const std::string& fault)
+  {
+    if (!fault.empty())
+      throw Error("mesh file " + file + ": " + fault);
+  };
+  if (extension == ".ply")
+    refuse_cut_off(cut_off_ply(file));
+  Assimp::Importer importer;
+  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+  const aiScene* scene = importer.ReadFile(file, 0);
+  if (scene != nullptr)
+  {
+    check_faces(*scene, file);
+    scene = importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_SortByPType);
+  }
+  const std::string no_triangles = ": has no triangles; it must hold a surface, not points or lines";
+  if (scene == nullptr && std::string(importer.GetErrorString()).find("No meshes remaining") != std::string::npos)
+    throw Error("mesh file " + file + no_triangles);
+  if (scene == nullptr && extension == ".stl")
+    refuse_cut_off(cut_off_stl(file));
+  if (scene == nullptr)
+    throw Error("mesh file " + file + ": cannot be read as a mesh (" + importer.GetErrorString() +
+                "); it must hold triangles or quads, for example as OBJ, STL or PLY");
+  TriangleMesh mesh;
+  if (scene->mRootNode != nullptr)
+    append(*scene, *scene->mRootNode, aiMatrix4x4(), unit, mesh);
+  if (mesh.triangles.empty())
+    throw Error("mesh file " + file + no_triangles);
+  for (const Vector3& v : mesh.vertices)
+    if (!to_vector(v).allFinite())
+      throw failure("mesh file {}: the vertex ({:g}, {:g}, {:g}) is not finite; every coordinate must be finite", file,
+                    v[0] / unit, v[1] / unit, v[2] / unit);
+  return mesh;
+}
+
+}  // namespace frontalis
