@@ -4,6 +4,7 @@
 #include "cuda/backend/highest_frequency.hpp"
 #include "cuda/backend/launch_choice.hpp"
 #include "frontalis/solver/backend.hpp"
+#include "solver/skin/film_vertices.hpp"
 #include "solver/stepping/effect_switches.hpp"
 #include "solver/stepping/time_stepper.hpp"
 
@@ -199,6 +200,8 @@ void CudaSolver::skin(SkinState& out)
   take(out.vertices, vertices, skin_staged_.data());
   take(out.normals, vertices, skin_staged_.data() + 3 * vertices);
   take(out.landmarks, landmarks, skin_staged_.data() + 6 * vertices);
+  if (!model_->film.parents.empty())
+    place_film_vertices(*model_, out);
 }
 
 // Plans of 0.5 ms are long enough to hide the host's work between them, and short enough for the time step to follow

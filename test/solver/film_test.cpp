@@ -3,6 +3,7 @@
 
 #include "film_model.hpp"
 #include "frontalis/solver/fine_lines.hpp"
+#include "frontalis/solver/surface_normals.hpp"
 #include "solver/skin/film_equilibrium.hpp"
 
 #include <gtest/gtest.h>
@@ -213,6 +214,7 @@ TEST(Film, EachRegionHasLinesOfItsOwn)
     for (int frame = 0; frame < 6; ++frame)
     {
       skin.vertices = vertices;
+      surface_normals(model.skin.triangles, skin.vertices, skin.normals);
       fine_lines->add_to(skin, true);
     }
     return skin.line_height;
@@ -253,6 +255,7 @@ TEST(FineLines, MoveVerticesAlongTheNormalsAndTiltThese)
   {
     SkinState skin;
     skin.vertices = vertices;
+    surface_normals(model->skin.triangles, skin.vertices, skin.normals);
     lines.add_to(skin, wait);
     return skin;
   };

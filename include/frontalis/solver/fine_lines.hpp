@@ -20,10 +20,9 @@ public:
   FineLines(const FineLines&) = delete;
   FineLines& operator=(const FineLines&) = delete;
 
-  /// Adds lines to the skin of a solver, in the local frame. Puts the vertices that the film has added onto a smooth
-  /// surface through those that follow the voxels, moves all of them along the normals by the height of the lines,
-  /// finds the normals anew, and sets SkinState::line_height. With a separate thread, `wait` tells whether to wait for
-  /// the heights of this skin or to use the latest that are ready.
+  /// Adds lines to the skin of a solver, in the local frame. Moves the vertices along the normals by the height of the
+  /// lines, finds the normals anew, and sets SkinState::line_height. With a separate thread, `wait` tells whether to
+  /// wait for the heights of this skin or to use the latest that are ready.
   void add_to(SkinState& skin, bool wait);
 
   /// Like add_to(), for a skin that stands still: lines grow from the flat skin until they are in equilibrium, so that

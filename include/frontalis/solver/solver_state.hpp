@@ -11,6 +11,7 @@ namespace frontalis
 /// Published surface in the local frame [m].
 struct SkinState
 {
+  /// Those that a film has added (SkinFilm::parents) lie on a smooth surface through those that follow the voxels.
   std::vector<std::array<float, 3>> vertices;
   std::vector<std::array<float, 3>> normals;  ///< outward unit normals, area-weighted means over triangles
   std::vector<std::array<float, 3>> landmarks;

@@ -1,7 +1,7 @@
 #include "frontalis/solver/fine_lines.hpp"
 
 #include "frontalis/error.hpp"
-#include "solver/skin/bound_points.hpp"
+#include "frontalis/solver/surface_normals.hpp"
 #include "solver/skin/film_equilibrium.hpp"
 
 #include <time.h>
@@ -85,23 +85,6 @@ struct FineLines::Implementation
     }
   }
 
-  // Finds positions and normals of the vertices in the middles of edges, from those of the vertices bound to voxels.
-  void place(SkinState& skin) const
-  {
-    using Vector = physics::Vec3<float>;
-    const auto vector = [](const std::array<float, 3>& a) { return Vector{ a[0], a[1], a[2] }; };
-    surface_normals(model->film.carried, skin.vertices, skin.normals);
-    std::size_t v = skin.vertices.size() - model->film.parents.size();
-    for (const auto& [a, b] : model->film.parents)
-    {
-      Vector normal{};
-      const Vector at = curved_middle(vector(skin.vertices[a]), vector(skin.normals[a]), vector(skin.vertices[b]),
-                                      vector(skin.normals[b]), normal);
-      skin.vertices[v] = { { at.x, at.y, at.z } };
-      skin.normals[v++] = { { normal.x, normal.y, normal.z } };
-    }
-  }
-
   // Moves the vertices by the heights of lines.
   void raise(SkinState& skin) const
   {
@@ -139,7 +122,6 @@ FineLines::~FineLines()
 
 void FineLines::add_to(SkinState& skin, bool wait)
 {
-  self_->place(skin);
   if (self_->thread.joinable())
   {
     std::unique_lock<std::mutex> lock(self_->mutex);
@@ -163,7 +145,6 @@ void FineLines::add_settled(SkinState& skin)
   if (self_->thread.joinable())
     throw Error("lines of a skin that stands still are not found by a separate thread");
   self_->found.clear();
-  self_->place(skin);
   bool settled = false;
   double seconds = 0;
   for (int frame = 0; frame < most_frames && !settled; ++frame)

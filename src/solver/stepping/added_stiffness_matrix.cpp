@@ -69,9 +69,24 @@ AddedStiffnessMatrix::AddedStiffnessMatrix(const Model& model, const Discretisat
       sum += at_nodes;
     }
   sum.makeCompressed();
-  row_begin_.assign(sum.outerIndexPtr(), sum.outerIndexPtr() + sum.outerSize() + 1);
+  for (std::int32_t n = 0; n < static_cast<std::int32_t>(root.size()); ++n)
+    if (sum.outerIndexPtr()[n] < sum.outerIndexPtr()[n + 1])
+    {
+      row_.push_back(n);
+      row_begin_.push_back(sum.outerIndexPtr()[n]);
+    }
+  row_begin_.push_back(static_cast<std::int32_t>(sum.nonZeros()));
   column_.assign(sum.innerIndexPtr(), sum.innerIndexPtr() + sum.nonZeros());
-  value_.assign(sum.valuePtr(), sum.valuePtr() + sum.nonZeros());
+  stiffness_.assign(sum.valuePtr(), sum.valuePtr() + sum.nonZeros());
+  masses_changed(root);
+}
+
+void AddedStiffnessMatrix::masses_changed(const std::vector<double>& root)
+{
+  value_.resize(stiffness_.size());
+  for (std::size_t row = 0; row < row_.size(); ++row)
+    for (auto i = row_begin_[row]; i < row_begin_[row + 1]; ++i)
+      value_[i] = static_cast<float>(root[row_[row]] * static_cast<double>(stiffness_[i]) * root[column_[i]]);
 }
 
 }  // namespace frontalis

@@ -183,6 +183,7 @@ void HighestFrequencySearch<Real>::masses_changed(const Discretisation& discreti
 {
   const std::vector<double> root = roots_for_search(discretisation);
   std::copy(root.begin(), root.end(), root_.begin());
+  added_.masses_changed(root);
 }
 
 template <class Real>
@@ -336,7 +337,7 @@ double HighestFrequencySearch<Real>::run(std::int32_t first, std::int32_t end, c
       const Nodes at = nodes(part);
       find_image(at, forces.found, factor, back, before, after);
       add_followers(at, forces.found, factor, after);
-      added_.add_product(at.first, at.end, root_, static_cast<Real>(1 / length), now, after);
+      added_.add_product(at.first, at.end, static_cast<Real>(1 / length), now, after);
       along_[part] = product(at, after, now);
     }
     forces.barrier();
