@@ -30,7 +30,9 @@ void find_surfaces_apart(const Scene& scene, const Volumes& volumes, BakeMonitor
     for (const std::size_t b : entry.outside)
     {
       const PreparedSurface& body = volumes.body(b);
-      if (entry.volume->tissue && !body.box().intersects(tissue) && told.insert(body.name()).second)
+      if (!entry.volume->tissue)
+        continue;
+      if (!body.box().intersects(tissue) && told.insert(body.name()).second)
         monitor.warn("surface '{}' bounds no tissue: it spans {}, the tissue {}; check its place and its length unit",
                      body.name(), box_text(body.box(), scene.unit), box_text(tissue, scene.unit));
       else if (body.box().diagonal().norm() < to_vector(scene.accuracy.voxel).minCoeff() &&

@@ -34,7 +34,9 @@ void check_pairs(const Scene& scene, const std::map<std::string, Thing>& things)
     const Box& there = other->second.box;
     const Vector3d apart = thing.box.center() - there.center();
     if (thing.box.min() == there.min() && thing.box.max() == there.max())
-      throw failure("{} lies where '{}' does; give each its own data", thing.place, other->first);
+      throw failure(
+          "{} lies where '{}' does; give each its own data, or use one of them, named without a side, for both",
+          thing.place, other->first);
     if (apart.norm() < least_distance || left.dot(apart) > -clear * apart.norm())
       continue;
     if (exchanged++ == 0)

@@ -34,8 +34,8 @@ struct Interrupted
 /// Whether Ctrl-C or SIGTERM was received once; a second one ends the program.
 bool interrupt_requested();
 
-/// From now on, the first Ctrl-C or SIGTERM ends the program: for work without results that could be lost. Throws
-/// Interrupted if one was received before.
+/// From now on, the first Ctrl-C or SIGTERM ends the program: for work whose output is flushed as it is made, and whose
+/// files are written at the end. Throws Interrupted if one was received before.
 void end_at_interrupt();
 
 // One function per subcommand. It declares the options in `app`, and the work to be done once the command line has been

@@ -162,6 +162,7 @@ Model bake_scene(const ModelSource& source, BakeSummary* summary)
     catch (const Error&)
     {
       // What is probably a mistake may be the cause.
+      progress.clear();
       print_warnings();
       throw;
     }

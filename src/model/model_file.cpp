@@ -89,7 +89,7 @@ Model read(const std::string& path, const std::string* scene_hash)
 
 void write_model(const Model& model, const std::string& name)
 {
-  // A link stays, and its target is replaced.
+  // A link to a file stays, and the file is replaced.
   std::error_code missing;
   const std::filesystem::path target = std::filesystem::canonical(name, missing);
   const std::string path = missing ? name : target.string();
@@ -109,7 +109,7 @@ void write_model(const Model& model, const std::string& name)
   catch (const Error& error)
   {
     std::remove(partial.c_str());
-    throw Error("model file " + path + ": " + error.what());
+    throw Error("model file " + name + ": " + error.what());
   }
   catch (...)
   {

@@ -21,7 +21,7 @@ namespace
 constexpr double play_period = 1.0 / 30;     // time between two updates of changing activations [s]
 constexpr double repetition_period = 0.5;    // a face that stands still repeats its frame after this time [s]
 constexpr double diagnostics_period = 1.0;   // time between two diagnostic messages without ~diagnostic_period [s]
-constexpr double longest_period = 1e6;       // ROS cannot count longer durations [s]
+constexpr double longest_period = 1e6;       // largest ~diagnostic_period [s]; ROS can count durations up to 2e9 s
 constexpr double stalled_after = 3.0;        // diagnostics warn if there is no frame for this time [s]
 constexpr double speed_settled_after = 3.0;  // the real-time factor is logged after this time [s]
 

@@ -207,10 +207,15 @@ void FaceNode::on_config(FaceConfig& config, std::uint32_t)
 
 void FaceNode::apply_config(Runner& running, const FaceConfig& config)
 {
-  for (const double number : { config.frame_rate, config.colour_range, config.damping, config.command_timeout,
-                               config.relax_time, config.stamp_tolerance, config.real_time_factor_warning })
+  for (const auto& [name, number] : { std::pair<const char*, double>{ "frame_rate", config.frame_rate },
+                                      { "colour_range", config.colour_range },
+                                      { "damping", config.damping },
+                                      { "command_timeout", config.command_timeout },
+                                      { "relax_time", config.relax_time },
+                                      { "stamp_tolerance", config.stamp_tolerance },
+                                      { "real_time_factor_warning", config.real_time_factor_warning } })
     if (!std::isfinite(number))
-      throw Error(fmt::format("found {}; every number must be finite", number));
+      throw Error(fmt::format("{}: found {}; must be finite", name, number));
   const SkinColour colour = skin_colour_from_name(config.skin_colour);
   const SkinField field = skin_field_from_name(config.skin_field);
   std::set<std::string> off;

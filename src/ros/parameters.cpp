@@ -108,7 +108,7 @@ FaceParameters read_parameters(const ros::NodeHandle& private_handle)
       reader.text("blendshapes_table", ros::package::getPath("frontalis") + "/config/blendshapes.yaml");
   out.inputs.bone_frames = read_bone_frames(reader);
   out.inputs.bone_speed = reader.number("bone_speed", out.inputs.bone_speed, "a number [m/s]", 0.0, "0 or more [m/s]");
-  out.real_time_factor_warning = reader.value("real_time_factor_warning", 0.5, "a number");
+  out.real_time_factor_warning = reader.number("real_time_factor_warning", 0.5, "a number", 0.0, "0 or more");
   reader.finish();
   return out;
 }

@@ -206,6 +206,38 @@ TEST_F(Import, HolesThatTouchAtACornerAreHoles)
   EXPECT_EQ(surface.findings[0].find("surface 'body': is open"), 0u) << surface.findings[0];
 }
 
+// The triangles of both cubes meet in common edges everywhere.
+TEST_F(Import, CubesThatOverlapOnACommonGridAreAnError)
+{
+  const auto cube = [](double from)
+  {
+    TriangleMesh mesh;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      for (int cell = 0; cell < 8; ++cell)
+      {
+        const double side = from + 20 * (cell / 4), u = from + 10 * (cell % 2), v = from + 10 * (cell / 2 % 2);
+        const auto first = static_cast<std::int32_t>(mesh.vertices.size());
+        for (const auto& [du, dv] : { std::pair<double, double>{ 0, 0 }, { 10, 0 }, { 10, 10 }, { 0, 10 } })
+        {
+          Vector3 p;
+          p[axis] = side;
+          p[(axis + 1) % 3] = u + du;
+          p[(axis + 2) % 3] = v + dv;
+          mesh.vertices.push_back(p);
+        }
+        const std::int32_t b = cell / 4 == 0 ? 3 : 1, d = 4 - b;
+        mesh.triangles.push_back({ first, first + b, first + 2 });
+        mesh.triangles.push_back({ first, first + 2, first + d });
+      }
+    join_vertices(mesh);
+    return mesh;
+  };
+  EXPECT_NEAR(signed_volume(load(cube(0)).mesh), 8e-6, 1e-12);
+  TriangleMesh both = together(cube(0), cube(10));
+  join_vertices(both);
+  EXPECT_THROW(load(both), Error);
+}
+
 TEST(MeshFaults, FoldsOverACommonCornerOrEdgeAreCrossings)
 {
   // Copies of corners stand for those that the half-edge structure makes where holes touch.

@@ -194,7 +194,7 @@ class Inputs(unittest.TestCase):
         wait(lambda: "no command" not in self.face.diagnostics[0].message, "the end of the diagnostic")
 
     def test_numbers_that_are_not_finite_do_not_configure(self):
-        for name in ("frame_rate", "relax_time", "command_timeout", "stamp_tolerance", "real_time_factor_warning"):
+        for name in ("frame_rate", "colour_range", "damping", "relax_time", "command_timeout", "stamp_tolerance", "real_time_factor_warning"):
             before = self.config.get_configuration()[name]
             self.assertEqual(self.config.update_configuration({name: math.nan})[name], before)
 

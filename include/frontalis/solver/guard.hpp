@@ -29,7 +29,8 @@ std::string words_for(Instability instability);
 
 struct GuardSettings
 {
-  int interval = 0;     ///< most steps between two checks; 0: Solver::steps_per_check
+  /// steps between two checks, up to twice as many if the time step falls meanwhile; 0: Solver::steps_per_check
+  int interval = 0;
   double slower = 0.5;  ///< factor on the time step after a finding, applied once per try
   int recovery = 4;     ///< number of checks without a finding before the full time step is used again
   int tries = 3;        ///< failed tries in a row after which the motion is stopped

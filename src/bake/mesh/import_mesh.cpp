@@ -12,6 +12,7 @@
 #include <cctype>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <sstream>
 
 namespace frontalis
@@ -46,19 +47,36 @@ void append(const aiScene& scene, const aiNode& node, const aiMatrix4x4& parent,
     append(scene, *node.mChildren[c], transform, unit, mesh);
 }
 
-/// What is wrong with a binary STL file that ends too early, or an empty text.
+std::string in_lower_case(std::string text)
+{
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
+/// What is wrong with an STL file that ends too early, or an empty text.
 std::string cut_off_stl(const std::string& file)
 {
   std::ifstream stream(file, std::ios::binary);
   std::array<char, 84> header{};  // a text of 80 bytes, then the number of triangles, the lowest byte first
-  if (!stream.read(header.data(), header.size()) || std::string(header.data(), 5) == "solid")
-    return {};
+  const bool whole = !stream.read(header.data(), header.size()).fail();
   double triangles = 0;
   for (std::size_t byte = 84; byte-- > 80;)
     triangles = 256 * triangles + static_cast<unsigned char>(header[byte]);
+  stream.clear();
   stream.seekg(0, std::ios::end);
-  const auto bytes = static_cast<double>(stream.tellg()), expected = 84 + 50 * triangles;
-  if (bytes >= expected)
+  const auto size = static_cast<std::streamoff>(stream.tellg());
+  const double bytes = static_cast<double>(size), expected = 84 + 50 * triangles;
+  // The text at the start of a binary file may be that of a text file.
+  if (std::string(header.data(), 5) == "solid" && bytes != expected)
+  {
+    constexpr std::streamoff end = 1000;
+    stream.seekg(std::max<std::streamoff>(0, size - end));
+    const std::string last{ std::istreambuf_iterator<char>(stream), {} };
+    return in_lower_case(last).find("endsolid") == std::string::npos
+               ? "it does not end with 'endsolid': it was cut off; copy or export it again"
+               : "";
+  }
+  if (!whole || bytes >= expected)
     return {};
   return fmt::format(
       "its header announces {:.0f} triangles, as STL {:.0f} bytes, but it has {:.0f}: it was cut off, or is "
@@ -88,8 +106,8 @@ std::string cut_off_ply(const std::string& file)
   if (found >= announced)
     return {};
   return fmt::format(
-      "its header announces {:.0f} vertices, faces and so on, but it has {:.0f}: it was cut off; copy or "
-      "export it again",
+      "its header announces {:.0f} vertices, faces and so on, but it has {:.0f} lines of them: it was cut off, or "
+      "has several on one line; copy or export it again",
       announced, found);
 }
 
@@ -120,16 +138,10 @@ TriangleMesh import_mesh(const std::string& file, double unit)
   std::error_code code;
   if (!std::filesystem::is_regular_file(file, code))
     throw Error("mesh file " + file + ": there is no such file");
-  std::string extension = std::filesystem::path(file).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
-  const auto refuse_cut_off = [&](const std::string& fault)
-  {
-    if (!fault.empty())
-      throw Error("mesh file " + file + ": " + fault);
-  };
-  if (extension == ".ply")
-    refuse_cut_off(cut_off_ply(file));
+  const std::string extension = in_lower_case(std::filesystem::path(file).extension().string());
+  const std::string cut_off = extension == ".ply" ? cut_off_ply(file) : extension == ".stl" ? cut_off_stl(file) : "";
+  if (!cut_off.empty())
+    throw Error("mesh file " + file + ": " + cut_off);
   Assimp::Importer importer;
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   const aiScene* scene = importer.ReadFile(file, 0);
@@ -141,8 +153,6 @@ TriangleMesh import_mesh(const std::string& file, double unit)
   const std::string no_triangles = ": has no triangles; it must hold a surface, not points or lines";
   if (scene == nullptr && std::string(importer.GetErrorString()).find("No meshes remaining") != std::string::npos)
     throw Error("mesh file " + file + no_triangles);
-  if (scene == nullptr && extension == ".stl")
-    refuse_cut_off(cut_off_stl(file));
   if (scene == nullptr)
     throw Error("mesh file " + file + ": cannot be read as a mesh (" + importer.GetErrorString() +
                 "); it must hold triangles or quads, for example as OBJ, STL or PLY");

@@ -124,22 +124,25 @@ void refuse_faults(const TriangleMesh& mesh, const MeshFaults& faults, bool clos
         "is closed but encloses nothing: it has no thickness at {}; give it one, or use an open sheet that bounds a "
         "volume together with others",
         place_text(bounding_box(mesh).center(), unit));
-  if (faults.crossings.count == 0)
+  const auto& crossing = faults.crossing_piece;
+  if (std::find(crossing.begin(), crossing.end(), true) == crossing.end())
     return;
 
   const Overlap overlap = find_overlap(mesh, faults);
-  const std::string crossing = fmt::format("passes through itself: {} of triangles cross, ",
-                                           count_text(faults.crossings.count, "pair", "pairs"));
+  const std::string fault = faults.crossings.count == 0
+                                ? "passes through itself along common edges of its parts, "
+                                : fmt::format("passes through itself: {} of triangles cross, ",
+                                              count_text(faults.crossings.count, "pair", "pairs"));
   if (overlap.share > largest_overlap || overlap.depth > deepest_overlap * overlap.size)
     throw failure(
         "{}and {:.2g} % of what it encloses is enclosed twice or from outside, deepest ({}) at {}; unite the parts in "
         "a modelling tool, or give each a file and a surface of its own",
-        crossing, 100 * overlap.share, length_text(overlap.depth, unit), place_text(overlap.deepest, unit));
+        fault, 100 * overlap.share, length_text(overlap.depth, unit), place_text(overlap.deepest, unit));
   if (!closed && faults.crossing_extent > widest_crossing * bounding_box(mesh).diagonal().norm())
     throw failure(
         "{}over {} around {}; delete one of the sheets in a modelling tool, or give each a file and a surface of "
         "its own",
-        crossing, length_text(faults.crossing_extent, unit), place_text(faults.crossings.place, unit));
+        fault, length_text(faults.crossing_extent, unit), place_text(faults.crossings.place, unit));
 }
 
 using Found = std::function<void(const std::string& sentence)>;

@@ -109,7 +109,7 @@ void find_pieces(HalfEdgeMesh& mesh, MeshFaults& faults)
 }
 
 /// Whether two triangles only touch at corners, of which the half-edge structure has copies: where holes or bodies meet
-/// in a corner or an edge.
+/// in a corner or an edge. Also true for one triangle without area, which find_thin_triangles() reports.
 bool only_touch(const HalfEdgeMesh& mesh, Face a, Face b)
 {
   using Points = std::vector<Kernel::Point_3>;
@@ -151,6 +151,9 @@ void find_crossings(const HalfEdgeMesh& mesh, MeshFaults& faults)
 {
   std::vector<std::pair<Face, Face>> pairs;
   processing::self_intersections(mesh, std::back_inserter(pairs));
+  // Bodies may overlap although their triangles only touch, where these meet in common edges.
+  for (const auto& [a, b] : pairs)
+    faults.crossing_piece[faults.piece[a]] = faults.crossing_piece[faults.piece[b]] = true;
   pairs.erase(std::remove_if(pairs.begin(), pairs.end(),
                              [&](const auto& pair) { return only_touch(mesh, pair.first, pair.second); }),
               pairs.end());
@@ -165,8 +168,6 @@ void find_crossings(const HalfEdgeMesh& mesh, MeshFaults& faults)
   {
     crosses[a] = crosses[b] = true;
     groups.union_set(std::size_t{ a }, std::size_t{ b });
-    faults.crossing_piece[faults.piece[a]] = true;
-    faults.crossing_piece[faults.piece[b]] = true;
   }
   for (const Face face : mesh.faces())
     for (const auto edge : CGAL::halfedges_around_face(mesh.halfedge(face), mesh))

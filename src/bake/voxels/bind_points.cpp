@@ -266,8 +266,7 @@ std::string text_of_body_around(const Scene& scene, const PreparedSurfaces& surf
   for (const Volume& volume : scene.volumes)
     for (const std::string& name : volume.outside)
       for (const auto& surface : surfaces)
-        if (volume.tissue && surface->name() == name &&
-            surface->signed_distance(point, surface->tree().closest(point)) < 0)
+        if (volume.tissue && surface->name() == name && surface->tree().winding_number(point) > 0.5)
           return fmt::format(" and lies inside of surface '{}', which may be misplaced", name);
   return "";
 }

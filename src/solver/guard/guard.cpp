@@ -315,7 +315,7 @@ bool Guard::advance(double seconds, const Controls& target, const std::function<
     const double part = static_cast<double>(g.checked_at + g.settings.interval - g.steps()) * g.solver.time_step();
     done = part >= left;
     // If the time step falls within the part, its check is not put off to the end.
-    const auto part_goes_on = [&] { return goes_on() && g.steps() - g.checked_at < 2 * g.settings.interval; };
+    const auto part_goes_on = [&] { return goes_on() && (g.steps() - g.checked_at) / 2 < g.settings.interval; };
     const auto go = [&]
     {
       const Controls to = done ? target : interpolate(g.solver.controls(), target, part / left);
