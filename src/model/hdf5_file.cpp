@@ -35,6 +35,9 @@ private:
 
 void silence() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 
+/// To be called after failures: at its end, HDF5 waits in vain for other threads that still have errors.
+void forget_errors() { H5Eclear2(H5E_DEFAULT); }
+
 /// Creation properties that store no time stamps, so that equal models give equal bytes.
 hid_t timeless(hid_t kind)
 {
@@ -59,7 +62,10 @@ Hdf5File Hdf5File::create(const std::string& path)
   const Handle list(timeless(H5P_FILE_CREATE), H5Pclose, "make a property list");
   const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, list, H5P_DEFAULT);
   if (file < 0)
+  {
+    forget_errors();
     throw Error("cannot create the file; the folder must exist and be writable");
+  }
   return Hdf5File(file);
 }
 
@@ -75,7 +81,10 @@ Hdf5File Hdf5File::open(const std::string& path)
     throw Error("is not an HDF5 file; must be a model written by 'frontalis bake'");
   const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   if (file < 0)
+  {
+    forget_errors();
     throw Error("is truncated or damaged; bake it again");
+  }
   return Hdf5File(file);
 }
 
@@ -83,6 +92,7 @@ Hdf5File::~Hdf5File()
 {
   if (file_ >= 0)
     H5Fclose(file_);
+  forget_errors();
 }
 
 void Hdf5File::close()

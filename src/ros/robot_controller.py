@@ -104,6 +104,8 @@ class Controller:
         for name in message.joint_names:
             if name not in self.by_name:
                 return "there is no joint '%s'; the joints are %s" % (name, ", ".join(self.by_name))
+        if len(set(message.joint_names)) < len(message.joint_names):
+            return "a joint is named twice"
         before = -1.0
         for point in message.points:
             time = point.time_from_start.to_sec()

@@ -53,7 +53,7 @@ std::string in_lower_case(std::string text)
   return text;
 }
 
-/// What is wrong with an STL file that ends too early, or an empty text.
+/// What is wrong with an STL file that ends too early or too late, or an empty text.
 std::string cut_off_stl(const std::string& file)
 {
   std::ifstream stream(file, std::ios::binary);
@@ -76,12 +76,13 @@ std::string cut_off_stl(const std::string& file)
                ? "it does not end with 'endsolid': it was cut off; copy or export it again"
                : "";
   }
-  if (!whole || bytes >= expected)
+  if (!whole || bytes == expected)
     return {};
   return fmt::format(
-      "its header announces {:.0f} triangles, as STL {:.0f} bytes, but it has {:.0f}: it was cut off, or is "
-      "no STL file; copy or export it again",
-      triangles, expected, bytes);
+      "its header announces {:.0f} triangles, as STL {:.0f} bytes, but it has {:.0f}: it was {}, or is no STL file; "
+      "copy "
+      "or export it again",
+      triangles, expected, bytes, bytes < expected ? "cut off" : "extended");
 }
 
 /// What is wrong with a PLY file of text that ends too early, or an empty text.
@@ -138,6 +139,10 @@ TriangleMesh import_mesh(const std::string& file, double unit)
   std::error_code code;
   if (!std::filesystem::is_regular_file(file, code))
     throw Error("mesh file " + file + ": there is no such file");
+  std::array<char, 3> start{};
+  std::ifstream(file, std::ios::binary).read(start.data(), start.size());
+  if (std::string(start.data(), start.size()) == "\xef\xbb\xbf")
+    throw Error("mesh file " + file + ": begins with a byte-order mark; save it as text without one");
   const std::string extension = in_lower_case(std::filesystem::path(file).extension().string());
   const std::string cut_off = extension == ".ply" ? cut_off_ply(file) : extension == ".stl" ? cut_off_stl(file) : "";
   if (!cut_off.empty())
