@@ -13,7 +13,9 @@ struct SkinState
 {
   /// Those that a film has added (SkinFilm::parents) lie on a smooth surface through those that follow the voxels.
   std::vector<std::array<float, 3>> vertices;
-  std::vector<std::array<float, 3>> normals;  ///< outward unit normals, area-weighted means over triangles
+  /// Outward unit normals: area-weighted means over triangles, and of a solver's vertices that a film has added the
+  /// means of those of their two neighbours.
+  std::vector<std::array<float, 3>> normals;
   std::vector<std::array<float, 3>> landmarks;
   std::vector<float> line_height;  ///< of fine lines over the skin, per vertex [m]; empty without them (FineLines)
 };

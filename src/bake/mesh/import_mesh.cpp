@@ -80,8 +80,7 @@ std::string cut_off_stl(const std::string& file)
     return {};
   return fmt::format(
       "its header announces {:.0f} triangles, as STL {:.0f} bytes, but it has {:.0f}: it was {}, or is no STL file; "
-      "copy "
-      "or export it again",
+      "copy or export it again",
       triangles, expected, bytes, bytes < expected ? "cut off" : "extended");
 }
 
