@@ -41,6 +41,16 @@ void leave_out_unused(Scene& scene)
   all.erase(std::remove_if(all.begin(), all.end(), unused), all.end());
 }
 
+// A generated forehead has triangles as small as voxels. A study of accuracy changes the voxels afterwards, and all its
+// models have the same triangles.
+void divide_foreheads(Scene& scene)
+{
+  const double voxel = *std::min_element(scene.accuracy.voxel.begin(), scene.accuracy.voxel.end());
+  for (Surface& surface : scene.surfaces)
+    if (surface.shape && surface.shape->kind == Shape::Kind::forehead && surface.shape->edge <= 0)
+      surface.shape->edge = std::min(surface.shape->edge_or_default(), voxel);
+}
+
 // Checks the muscles that materials name. Materials are read before muscles, because muscles name materials too.
 void check_tissues(const Scene& scene, const Node& tissues, const SceneNames& names)
 {
@@ -84,6 +94,7 @@ void read_root(const Node& root, const SceneOptions& options, Scene& scene)
   read_expressions(action_units, mapping.optional("expressions"), scene, names);
   read_demo(mapping.optional("demo"), scene, names);
   leave_out_unused(scene);
+  divide_foreheads(scene);
   check_tissues(scene, tissues, names);
 }
 

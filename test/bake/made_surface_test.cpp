@@ -186,12 +186,4 @@ TEST(CurvedMuscle, HasFibresAlongTheLoopsOfARing)
   EXPECT_LT(mean_angle(baked_muscle(ring), true), 3);
 }
 
-TEST(GeneratedForehead, HasASkinAsFineAsItsVoxels)
-{
-  const Surface skin = forehead_surface("skin");
-  const auto count = [&](double voxel) { return load_surface(skin, 1e-3, voxel).mesh.triangles.size(); };
-  EXPECT_EQ(count(3e-3), count(2e-3));
-  EXPECT_NEAR(static_cast<double>(count(1e-3)) / static_cast<double>(count(2e-3)), 1.75 * 1.75, 0.2);
-}
-
 }  // namespace

@@ -255,6 +255,19 @@ TEST(ForeheadScene, BakesWithAllItsParts)
   }
 }
 
+// A study of accuracy compares skins vertex by vertex.
+TEST(ForeheadScene, KeepsItsSkinWhenVoxelsChange)
+{
+  Scene scene = read_scene(source + "/config/forehead.yaml");
+  const std::size_t vertices = bake(scene).skin.vertices.size();
+  scene.accuracy.voxel.fill(1.5e-3);
+  EXPECT_EQ(bake(scene).skin.vertices.size(), vertices);
+  SceneOptions fine;
+  fine.voxel = 1e-3;
+  const std::size_t more = bake(read_scene(source + "/config/forehead.yaml", fine)).skin.vertices.size();
+  EXPECT_NEAR(static_cast<double>(more) / static_cast<double>(vertices), 1.75 * 1.75, 0.2) << "as fine as the voxels";
+}
+
 TEST(ForeheadScene, BakingTwiceGivesTheSameBytes)
 {
   const TemporaryFolder folder;

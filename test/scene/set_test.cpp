@@ -57,7 +57,7 @@ TEST(Set, holds_each_part_as_a_surface_of_its_name)
   {
     const Surface& surface = named(scene.surfaces, part);
     EXPECT_EQ(surface.shape->part, part);
-    EXPECT_EQ(surface.shape->edge, part == "skull" ? 5e-3 : 0) << "its own entry replaces a part";
+    EXPECT_EQ(surface.shape->edge, part == "skull" ? 5e-3 : 1e-3) << "its own entry replaces a part";
     EXPECT_EQ(surface.shape->dimensions.count("height"), part == "skull" ? 0U : 1U);
   }
 }

@@ -47,7 +47,7 @@ struct Shape
   double radius = 0;
   double minor_radius = 0;
   double length = 0;
-  double edge = 0;   ///< target edge length of the triangles [m]; 0: chosen from the size
+  double edge = 0;   ///< target edge length of the triangles [m]; 0: chosen from the size, or default_edge
   std::string part;  ///< name of the part (forehead and head only)
   std::shared_ptr<const HeadTemplate> head;
   /// Dimensions of the generated forehead or head [m] by name; dimensions that are not given have their defaults.
@@ -64,6 +64,9 @@ struct Shape
     double depth = 0;       ///< [m]
   };
   std::vector<Depth> depths;  ///< values between and beyond these places are interpolated
+
+  static constexpr double default_edge = 1.75e-3;  ///< of forehead, head, muscle and offset [m]
+  double edge_or_default() const { return edge > 0 ? edge : default_edge; }
 };
 
 struct Surface

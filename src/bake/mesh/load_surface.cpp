@@ -24,24 +24,18 @@ constexpr double widest_crossing = 0.05;
 constexpr int overlap_samples = 10000;
 
 /// Makes a shape of any kind.
-TriangleMesh make_any(const Shape& shape, double unit, double voxel)
+TriangleMesh make_any(const Shape& shape, double unit)
 {
-  constexpr double default_edge = 1.75e-3;  // [m]
   switch (shape.kind)
   {
     case Shape::Kind::forehead:
-    {
-      Shape forehead = shape;
-      if (shape.edge <= 0)
-        forehead.edge = std::min(default_edge, voxel);
-      return make_forehead(forehead);
-    }
+      return make_forehead(shape);
     case Shape::Kind::head:
       return make_head(shape);
     case Shape::Kind::muscle:
-      return net_surface(curved_muscle_net(shape), shape.edge > 0 ? shape.edge : default_edge, shape.thickness > 0);
+      return net_surface(curved_muscle_net(shape), shape.edge_or_default(), shape.thickness > 0);
     case Shape::Kind::offset:
-      return make_offset(shape, load_surface(*shape.below, unit, voxel).mesh);
+      return make_offset(shape, load_surface(*shape.below, unit).mesh);
     default:
       return make_shape(shape);
   }
@@ -192,13 +186,13 @@ void describe(const MeshFaults& faults, double unit, const Found& found)
 
 }  // namespace
 
-LoadedSurface load_surface(const Surface& surface, double unit, double voxel)
+LoadedSurface load_surface(const Surface& surface, double unit)
 {
   LoadedSurface loaded;
   TriangleMesh& mesh = loaded.mesh;
   if (surface.shape)
   {
-    mesh = make_any(*surface.shape, unit, voxel);
+    mesh = make_any(*surface.shape, unit);
     join_vertices(mesh);
     make_orientation_consistent(mesh);
     // The lining of a head's mouth faces out of the tissue, into the mouth, and would be taken to be inside out.

@@ -132,7 +132,6 @@ std::vector<const Surface*> needed_surfaces(const Scene& scene)
 PreparedSurfaces prepare_surfaces(const Scene& scene, BakeMonitor& monitor)
 {
   const std::vector<const Surface*> needed = needed_surfaces(scene);
-  const double voxel = to_vector(scene.accuracy.voxel).minCoeff();
   PreparedSurfaces prepared(needed.size());
   std::vector<LoadedSurface> loaded(needed.size());
   parallel_for(monitor, needed.size(), 1,
@@ -141,7 +140,7 @@ PreparedSurfaces prepare_surfaces(const Scene& scene, BakeMonitor& monitor)
                  const Surface& surface = *needed[s];
                  try
                  {
-                   loaded[s] = load_surface(surface, scene.unit, voxel);
+                   loaded[s] = load_surface(surface, scene.unit);
                  }
                  catch (const Error& error)
                  {

@@ -80,7 +80,7 @@ struct LoadedSurface
 /// Makes or reads a surface and makes the repairs that do not change its shape. Messages give positions in the length
 /// unit `unit` [m]. Throws Error, with position and remedy, if no triangle has an area, an odd number of triangles meet
 /// at an edge, a closed surface encloses nothing, or a surface passes through itself. Holes are allowed here;
-/// check_openings() refuses those that do harm. `voxel` [m]: a generated forehead has no longer edges.
-LoadedSurface load_surface(const Surface& surface, double unit, double voxel = 1);
+/// check_openings() refuses those that do harm.
+LoadedSurface load_surface(const Surface& surface, double unit);
 
 }  // namespace frontalis

@@ -20,7 +20,7 @@ void write_surfaces(const Scene& scene, const std::string& folder)
     TriangleMesh mesh;
     try
     {
-      mesh = load_surface(surface, scene.unit, to_vector(scene.accuracy.voxel).minCoeff()).mesh;
+      mesh = load_surface(surface, scene.unit).mesh;
     }
     catch (const Error& error)
     {

@@ -322,7 +322,7 @@ TriangleMesh make_forehead(const Shape& shape)
 {
   const ForeheadDimensions dimensions = dimensions_of(shape);
   const ForeheadMap map(dimensions);
-  const double edge = shape.edge > 0 ? shape.edge : 1.75e-3;
+  const double edge = shape.edge_or_default();
   const SkinGrid grid(map, edge, 0);
   const std::string& part = shape.part;
 

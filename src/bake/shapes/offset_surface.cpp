@@ -10,7 +10,6 @@ namespace frontalis
 
 TriangleMesh make_offset(const Shape& shape, const TriangleMesh& above)
 {
-  constexpr double default_edge = 1.75e-3;  // [m]
   const PreparedSurface surface("above", above);
   if (!surface.closed())
     throw Error("offset: the surface in 'below' has a border; it must be closed");
@@ -36,7 +35,7 @@ TriangleMesh make_offset(const Shape& shape, const TriangleMesh& above)
     return surface.signed_distance(p, closest) + depth_at(closest.point);
   };
   // The depth jumps where the closest point does.
-  TriangleMesh mesh = isosurface(f, surface.box(), shape.edge > 0 ? shape.edge : default_edge, false, most - least);
+  TriangleMesh mesh = isosurface(f, surface.box(), shape.edge_or_default(), false, most - least);
   if (mesh.triangles.empty())
     throw failure("offset: no point is as deep as the depths ask for, {:.3g} to {:.3g} mm", 1e3 * least, 1e3 * most);
   return mesh;

@@ -11,7 +11,7 @@ namespace frontalis
 namespace
 {
 
-constexpr double default_edge = 1.75e-3, skull_edge = 2e-3;  // [m]
+constexpr double skull_edge = 2e-3;  // [m]
 // A layer of hair on the part of the skin that is inside a body of the template: its height, and the distance from the
 // border over which it rises to this height.
 struct HairLayer
@@ -181,7 +181,7 @@ TriangleMesh Head::bone(const std::string& name, double edge) const
 
 TriangleMesh Head::part(const std::string& name, double wanted_edge) const
 {
-  const double edge = wanted_edge > 0 ? wanted_edge : name == "skull" ? skull_edge : default_edge;
+  const double edge = wanted_edge > 0 ? wanted_edge : name == "skull" ? skull_edge : Shape::default_edge;
   if (name == "skin" || name == "face" || name == "visible" || name == "mucosa" ||
       (name == "hair" && bones_->has("hair_top")))
     return skin(name, edge);
