@@ -236,6 +236,33 @@ Scene pressed_hollow(double x)
   return scene;
 }
 
+TEST(Loads, ActOnTheWholeOfATriangle)
+{
+  Scene scene = block_scene();
+  SceneLoad load;
+  load.name = "pull";
+  load.kind = SceneLoad::Kind::traction;
+  load.surface = "block";
+  load.value = { 10, 0, 0 };
+  load.crop.lower[0] = 19.9e-3;  // the end, a square of 2 triangles in the file, and 0.1 mm of its sides
+  scene.loads = { load };
+  const TriangleMesh mesh = bake(scene).loads.at(0).mesh;
+  double longest = 0, area = 0;
+  for (const auto& t : mesh.triangles)
+  {
+    const Vector3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+    const auto to = [](const Vector3& from, const Vector3& p) {
+      return Vector3{ p[0] - from[0], p[1] - from[1], p[2] - from[2] };
+    };
+    const Vector3 u = to(a, b), v = to(a, c), w = to(b, c);
+    area += 0.5 * std::hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]);
+    for (const Vector3& side : { u, v, w })
+      longest = std::max(longest, std::hypot(side[0], side[1], side[2]));
+  }
+  EXPECT_LT(longest, 1.001e-3) << "a voxel's edge";
+  EXPECT_NEAR(area, 12e-3 * 8e-3 + 0.1e-3 * 2 * (12e-3 + 8e-3), 1e-9);
+}
+
 TEST(Loads, SpareTrianglesThatHaveNoTissueBehindThem)
 {
   const Scene scene = pressed_hollow(12e-3);

@@ -1,4 +1,5 @@
 #include "bake/shapes/head/head.hpp"
+#include "bake/voxels/contact_bodies.hpp"
 #include "bake/voxels/model_stages.hpp"
 #include "bake/voxels/voxel_index.hpp"
 
@@ -141,10 +142,13 @@ std::vector<Vector3d> inward_normals(const TriangleMesh& surface, const LocalFra
   return normals;
 }
 
-/// The triangles of a load that are clear of the surfaces of SceneLoad::clear_of.
-TriangleMesh clear_mesh(const SceneLoad& load, const PreparedSurfaces& surfaces, const std::string& place)
+/// The triangles of a load that are clear of the surfaces of SceneLoad::clear_of. Because the load acts at vertices, no
+/// edge is longer than `longest` [m].
+TriangleMesh clear_mesh(const SceneLoad& load, const PreparedSurfaces& surfaces, double longest,
+                        const std::string& place)
 {
-  TriangleMesh mesh = cut_mesh(named_surface(surfaces, load.surface, place).mesh(), load.crop);
+  TriangleMesh mesh =
+      cut_mesh(refined(named_surface(surfaces, load.surface, place).mesh(), to_box(load.crop), longest), load.crop);
   for (const std::string& name : load.clear_of)
   {
     const TriangleTree& other = named_surface(surfaces, name, place).tree();
@@ -318,7 +322,8 @@ void bind_surfaces(const Scene& scene, const PreparedSurfaces& surfaces, const L
     else
     {
       const std::string place = place_in_scene(scene, "load", load);
-      const TriangleMesh surface = clear_mesh(load, surfaces, place);
+      const TriangleMesh surface =
+          clear_mesh(load, surfaces, *std::min_element(model.spacing.begin(), model.spacing.end()), place);
       BoundMesh bound = bind_mesh(loaded_mesh(scene, load, surface, frame, binder), Region(), frame, binder, monitor);
       const std::size_t left_out = surface.triangles.size() - bound.mesh.triangles.size();
       if (bound.mesh.triangles.empty())
