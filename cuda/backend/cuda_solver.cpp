@@ -44,8 +44,8 @@ CudaSolver::CudaSolver(const BackendInput& input, const std::string& remark)
   {
     slot.staged = PinnedArray<char>(controls);
     slot.controls = DeviceArray<char>(controls);
-    slot.seen = PinnedArray<std::uint32_t>(1);
-    slot.seen.data()[0] = 0;
+    slot.seen = PinnedArray<std::uint32_t>(plan_measures);
+    std::fill_n(slot.seen.data(), plan_measures, 0u);
     require(cudaEventCreateWithFlags(&slot.done, cudaEventDisableTiming), "making an event");
   }
   if (input.settings.ledger)
@@ -121,7 +121,7 @@ void CudaSolver::list_arrays(ArrayList& list)
   for (const auto& slot : slots_)
     list.add(Effect::elasticity, "controls", slot.controls.bytes());
   // The frequency bound of the latest plan limits the steps of later plans and thus belongs to the state.
-  list.add_state(slots_[(plans_ + plan_slots - 1) % plan_slots].seen.data(), sizeof(std::uint32_t));
+  list.add_state(slots_[(plans_ + plan_slots - 1) % plan_slots].seen.data(), plan_measures * sizeof(std::uint32_t));
   if (account_)
     account_->list_arrays(effect_of_fibres(*model_), list);
   if (monitor_)

@@ -12,7 +12,8 @@ namespace frontalis
 namespace cuda
 {
 
-/// The input of one plan in page-locked memory, and the frequency bound that its last step reports.
+/// The input of one plan in page-locked memory, and what it measures: the bits of the frequency bound and of the
+/// largest speed, single precision.
 struct PlanSlot
 {
   PinnedArray<char> staged;
@@ -21,9 +22,8 @@ struct PlanSlot
   cudaEvent_t done = nullptr;
 };
 
-/// The backend for one NVIDIA GPU, in single precision. Steps are queued without waiting for their results; the
-/// frequency bound that a plan's last step reports limits the plan after the next. The host waits only for that bound
-/// and for results that are requested.
+/// The backend for one NVIDIA GPU, in single precision. Steps are queued without waiting for their results; what a
+/// plan measures limits the plan after the next. The host waits only for that and for results that are requested.
 class CudaSolver : public StepBackend
 {
 public:
@@ -33,7 +33,7 @@ public:
 
   BackendTraits traits() const override;
   void list_arrays(ArrayList& list) override;
-  double run(const StepPlan& plan) override;
+  PlanMeasures run(const StepPlan& plan) override;
   void effects_switched() override;
   void get(NodalField field, NodalVectors& out) const override;
   void set(NodalField field, const NodalVectors& in) override;
@@ -52,7 +52,7 @@ public:
   void skin(SkinState& out) override;
 
 private:
-  static constexpr int plan_slots = 3;
+  static constexpr int plan_slots = 3, plan_measures = 2;
 
   StepArguments arguments(double dt, bool idle_parts = false) const;
   void kick(StepArguments& g, double seconds) const;

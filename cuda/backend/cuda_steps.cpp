@@ -1,5 +1,6 @@
 #include "cuda/backend/contact_point.hpp"
 #include "cuda/backend/cuda_solver.hpp"
+#include "cuda/kernels/monitor_kernel.hpp"
 
 #include "frontalis/physics/mutation.hpp"
 #include "frontalis/physics/sliding.hpp"
@@ -38,7 +39,7 @@ StepArguments CudaSolver::arguments(double dt, bool idle_parts) const
   return g;
 }
 
-// Copies to the device, in one transfer from page-locked memory: a zero frequency bound, the motion of bones and of
+// Copies to the device, in one transfer from page-locked memory: zeros for what is measured, the motion of bones and of
 // bodies that tissue may touch, the activations, and the relaxation times of viscous stresses. `relaxation` is empty if
 // launches do not relax stresses.
 void CudaSolver::stage(const StepPlan& plan, const std::vector<float>& relaxation, PlanSlot& slot, StepArguments& g)
@@ -163,7 +164,7 @@ bool CudaSolver::adds_stress() const
 // Whether patches can make many steps per launch.
 bool CudaSolver::stays() const { return launch_.patches && !account_; }
 
-double CudaSolver::run(const StepPlan& plan)
+PlanMeasures CudaSolver::run(const StepPlan& plan)
 {
   PlanSlot& slot = slots_[plans_ % plan_slots];
   StepArguments g = arguments(plan.dt);
@@ -215,24 +216,27 @@ double CudaSolver::run(const StepPlan& plan)
     relax_after(end - 1);
     done = end;
   }
-  require(cudaMemcpyAsync(slot.seen.data(), g.frequency_bound, sizeof(std::uint32_t), cudaMemcpyDeviceToHost, stream_),
-          "copying the frequency bound");
+  require(launch_largest_speed(g, static_cast<std::uint32_t>(device_.nodes()), g.frequency_bound + 1, stream_),
+          "finding the largest speed");
+  require(cudaMemcpyAsync(slot.seen.data(), g.frequency_bound, plan_measures * sizeof(std::uint32_t),
+                          cudaMemcpyDeviceToHost, stream_),
+          "copying measures");
   require(cudaEventRecord(slot.done, stream_), "recording an event");
   ++plans_;
   const auto seen = [&](std::int64_t index)
   {
     const PlanSlot& of = slots_[index % plan_slots];
     require(cudaEventSynchronize(of.done), "stepping");
-    float squared = 0;
-    std::memcpy(&squared, of.seen.data(), sizeof squared);
-    return double(squared);
+    float measured[plan_measures];
+    std::memcpy(measured, of.seen.data(), sizeof measured);
+    return PlanMeasures{ measured[0], measured[1] };
   };
-  // The host waits for the bound of the previous plan, so that the device always has work, or for that of this plan if
-  // the motion changes fast.
+  // The host waits for the measures of the previous plan, so that the device always has work, or for those of this plan
+  // if the motion changes fast.
   if (plans_ == 1 || plan.bound_awaited)
     return seen(plans_ - 1);
-  const double before = seen(plans_ - 2);
-  return before > plan.alarming ? seen(plans_ - 1) : before;
+  const PlanMeasures before = seen(plans_ - 2);
+  return before.frequency_squared > plan.alarming ? seen(plans_ - 1) : before;
 }
 
 // Computes the internal forces at any displacements. `out` must hold zeros for nodes without voxels.

@@ -9,6 +9,9 @@ namespace frontalis
 namespace cuda
 {
 
+static_assert(effect_traits.size() == 16,
+              "a new effect needs a DevicePart, or CudaSolver has to refuse models that have the effect");
+
 bool need_strips(const Model& model)
 {
   return std::any_of(model.contacts.begin(), model.contacts.end(),

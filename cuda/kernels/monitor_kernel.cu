@@ -4,6 +4,8 @@
 #include "cuda/kernels/palette_voxel.cuh"
 #include "frontalis/physics/element/voxel_readings.hpp"
 
+#include <algorithm>
+
 namespace frontalis
 {
 namespace cuda
@@ -116,6 +118,21 @@ __global__ void __launch_bounds__(block)
     parts[blockIdx.x] = found[0];
 }
 
+// The bits of floats that are not negative are in the order of the floats; those of NaN are the largest.
+__global__ void __launch_bounds__(block)
+    find_largest_speed(const __grid_constant__ StepArguments g, std::uint32_t nodes, std::uint32_t* bits)
+{
+  std::uint32_t largest = 0;
+  for (std::uint32_t n = 1 + blockIdx.x * block + threadIdx.x; n < nodes; n += gridDim.x * block)
+  {
+    const float x = g.v[0][n], y = g.v[1][n], z = g.v[2][n];
+    largest = max(largest, __float_as_uint(sqrtf(x * x + y * y + z * z)) & 0x7fffffffu);
+  }
+  largest = largest_of_warp(largest);
+  if (threadIdx.x % 32 == 0 && largest > 0)
+    atomicMax(bits, largest);
+}
+
 }  // namespace cuda
 
 cudaError_t launch_monitor(const StepArguments& arguments, const MonitorVoxels& voxels, const float4* u,
@@ -129,6 +146,14 @@ cudaError_t launch_monitor(const StepArguments& arguments, const MonitorVoxels& 
   for (int corner = 0; corner < 8; ++corner)
     add_to_corners<<<monitor_blocks, cuda::block, 0, stream>>>(arguments, voxels, corner);
   cuda::find_stiffest<<<monitor_blocks, cuda::block, 0, stream>>>(arguments, voxels, u, stiffest);
+  return cudaGetLastError();
+}
+
+cudaError_t launch_largest_speed(const StepArguments& arguments, std::uint32_t nodes, std::uint32_t* bits,
+                                 cudaStream_t stream)
+{
+  const std::uint32_t blocks = std::min<std::uint32_t>((nodes + cuda::block - 1) / cuda::block, monitor_blocks);
+  cuda::find_largest_speed<<<blocks, cuda::block, 0, stream>>>(arguments, nodes, bits);
   return cudaGetLastError();
 }
 

@@ -49,4 +49,9 @@ constexpr int monitor_blocks = 264;
 cudaError_t launch_monitor(const StepArguments& arguments, const MonitorVoxels& voxels, const float4* u,
                            PlaneMonitor* parts, StiffestVoxel* stiffest, cudaStream_t stream);
 
+/// Writes the bits of the largest speed of device nodes [m/s] to `bits`, which must be 0 before. `nodes`: their number,
+/// including the placeholder, node 0.
+cudaError_t launch_largest_speed(const StepArguments& arguments, std::uint32_t nodes, std::uint32_t* bits,
+                                 cudaStream_t stream);
+
 }  // namespace frontalis

@@ -81,12 +81,3 @@ TEST(BoneMotionLimits, limit_the_length_of_a_plan)
   EXPECT_TRUE(std::isinf(limits.longest_plan(moved(0), moved(0.4 * edge), 1)));
   EXPECT_TRUE(std::isinf(limits.longest_plan(moved(speed), moved(speed), 1)));
 }
-
-TEST(BoneMotionLimits, notice_fast_bones)
-{
-  const BoneMotionLimits limits(held_block(), 1);
-  const double felt = 0.03 * edge / speed;  // time step in which a bone with this speed moves by the limit [s]
-  EXPECT_TRUE(limits.fast(moved(0), moved(speed), 1, 1.01 * felt));
-  EXPECT_FALSE(limits.fast(moved(0), moved(speed), 1, 0.99 * felt));
-  EXPECT_FALSE(limits.fast(moved(0), moved(speed), 0, felt)) << "no time passes";
-}

@@ -47,7 +47,7 @@ int steps_until_calm(TimeStepController& controller)
 {
   int steps = 0;
   for (; !is_calm(controller) && steps < 10000; ++steps)
-    controller.observe(rest, 1);
+    controller.observe(rest, 0, 1);
   return steps;
 }
 
@@ -58,7 +58,7 @@ TEST(TimeStepController, takes_a_share_of_the_critical_step_or_a_fixed_one)
   EXPECT_DOUBLE_EQ(TimeStepController(rest, by_bound, 0.9, 0).safe_step(), 0.9 * critical);
   TimeStepController fixed(rest, by_bound, 0.9, 0.99 * critical);
   EXPECT_DOUBLE_EQ(fixed.safe_step(), 0.99 * critical);
-  fixed.observe(4 * rest, 1);
+  fixed.observe(4 * rest, 0, 1);
   EXPECT_DOUBLE_EQ(fixed.safe_step(), critical / 2) << "no longer than critical";
   for (const double refused : { 1.01 * critical, -critical, std::nan("") })
     EXPECT_THROW(TimeStepController(rest, by_bound, 0.9, refused), Error);
@@ -123,32 +123,53 @@ TEST(TimeStepController, is_cautious_for_a_time_after_a_jump_of_a_bone)
   controller.bone_jumped();
   int steps = 0;
   for (; choose(controller).bound_every_step && steps < 1000; ++steps)
-    controller.observe(slow, 1);
+    controller.observe(slow, 0, 1);
   EXPECT_EQ(steps, 5) << "30 ms in steps of 0.55 of the critical one";
+}
+
+TEST(TimeStepController, no_node_moves_far_in_a_step)
+{
+  TimeStepController controller(rest, by_bound, 0.9, 0);
+  const double longest = 0.9 * critical;
+  for (const auto& [way, dt] : { std::pair<double, double>{ 0.1, longest }, { 0.14, longest }, { 0.3, longest / 2 } })
+  {
+    controller.observe(rest, way / longest, 32);
+    EXPECT_NEAR(choose(controller).dt, dt, 1e-6 * longest) << way << " edges in a step";
+    EXPECT_TRUE(choose(controller).bound_awaited) << "speeds may grow";
+  }
+  EXPECT_FALSE(choose(controller).bound_every_step);
+  EXPECT_DOUBLE_EQ(controller.safe_step(), longest) << "what is still is not limited";
+  controller.velocities_set(0.05 / longest);
+  EXPECT_TRUE(is_calm(controller));
+  controller.velocities_set(0.3 / longest);
+  controller.slow_down(0.5);
+  EXPECT_NEAR(choose(controller).dt, longest / 2, 1e-6 * longest) << "short enough for the speed";
+  controller.displacements_set(rest);
+  EXPECT_EQ(controller.state().speed, 0) << "all is at rest";
 }
 
 TEST(TimeStepController, follows_what_stiffens_at_once_and_what_softens_slowly)
 {
   TimeStepController controller(rest, by_bound, 0.9, 0);
-  controller.observe(1.05 * rest, 32);
+  controller.observe(1.05 * rest, 0, 32);
   EXPECT_DOUBLE_EQ(controller.safe_step(), 0.9 * critical / std::sqrt(1.05));
   EXPECT_TRUE(is_calm(controller));
-  controller.observe(2 * rest, 32);
+  controller.observe(2 * rest, 0, 32);
   EXPECT_DOUBLE_EQ(controller.safe_step(), 0.9 * critical / std::sqrt(2.0));
-  controller.observe(1.2 * rest, 32);
+  controller.observe(1.2 * rest, 0, 32);
   EXPECT_DOUBLE_EQ(controller.state().measured, 0.95 * 2 * rest);
   for (int plan = 0; plan < 100; ++plan)
-    controller.observe(0.5 * rest, 32);
+    controller.observe(0.5 * rest, 0, 32);
   EXPECT_DOUBLE_EQ(controller.safe_step(), 0.9 * critical) << "never longer than at rest";
 }
 
 TEST(TimeStepController, is_cautious_after_signs_of_fast_change)
 {
   TimeStepController stiffened(rest, by_bound, 0.9, 0);
-  stiffened.observe(1.09 * rest, 32);
+  stiffened.observe(1.09 * rest, 0, 32);
   EXPECT_TRUE(is_calm(stiffened));
   EXPECT_GT(1.21 * rest, stiffened.alarming());
-  stiffened.observe(1.21 * rest, 32);
+  stiffened.observe(1.21 * rest, 0, 32);
   EXPECT_TRUE(is_cautious(stiffened));
   EXPECT_EQ(steps_until_calm(stiffened), 128);
 
@@ -163,7 +184,7 @@ TEST(TimeStepController, is_cautious_after_signs_of_fast_change)
   jumped.bone_jumped();
   EXPECT_TRUE(is_cautious(jumped));
   EXPECT_FALSE(jumped.muscles_switched({ 0 }, { 0 }));
-  jumped.observe(1.2 * rest, 900);
+  jumped.observe(1.2 * rest, 0, 900);
   EXPECT_EQ(steps_until_calm(jumped), 128) << "what lasts longer counts";
 
   TimeStepController set(rest, by_bound, 0.9, 0);
@@ -179,22 +200,22 @@ TEST(TimeStepController, takes_shorter_steps_while_stiffened_tissue_vibrates)
   TimeStepController controller(rest, by_bound, 0.9, 0);
   // A contraction slowly makes the model five times as stiff.
   for (double squared = rest; squared < 5 * rest; squared *= 1.03)
-    controller.observe(squared, 32);
+    controller.observe(squared, 0, 32);
   EXPECT_TRUE(is_calm(controller));
   const double squared = controller.state().measured;
-  controller.observe(0.9 * squared, 32);
+  controller.observe(0.9 * squared, 0, 32);
   const auto choice = choose(controller);
   EXPECT_FALSE(choice.bound_every_step);
   EXPECT_TRUE(choice.bound_awaited);
   EXPECT_EQ(choice.steps, 32);
   EXPECT_LE(choice.dt, (1 + 1e-8) * 0.55 * 2 / std::sqrt(0.95 * squared));
   for (int step = 0; step < 256; ++step)
-    controller.observe(0.9 * squared, 1);
+    controller.observe(0.9 * squared, 0, 1);
   EXPECT_TRUE(is_calm(controller));
   // Near the stiffness at rest, changes of the same relative size do not count as a vibration.
   TimeStepController soft(rest, by_bound, 0.9, 0);
   for (const double share : { 1.0, 0.9, 1.0, 0.9 })
-    soft.observe(share * rest, 32);
+    soft.observe(share * rest, 0, 32);
   EXPECT_TRUE(is_calm(soft));
 }
 
@@ -227,14 +248,14 @@ TEST(TimeStepController, slows_down_whatever_it_chooses)
 TEST(TimeStepController, goes_on_from_a_kept_state)
 {
   TimeStepController one(rest, by_bound, 0.9, 0), other(rest, by_bound, 0.9, 0);
-  one.observe(5 * rest, 32);
+  one.observe(5 * rest, 0, 32);
   one.slow_down(0.5);
   other.restore(one.state());
   EXPECT_DOUBLE_EQ(other.safe_step(), 2 * one.safe_step()) << "the share is not the motion's";
   for (const double share : { 6.0, 4.0, 4.5, 3.0 })
   {
-    one.observe(share * rest, 100);
-    other.observe(share * rest, 100);
+    one.observe(share * rest, 0, 100);
+    other.observe(share * rest, 0, 100);
     EXPECT_EQ(choose(one).steps, choose(other).steps);
     EXPECT_EQ(one.state().measured, other.state().measured);
   }
@@ -248,21 +269,22 @@ TEST(TimeStepController, follows_the_growth_since_rest_where_the_assembled_model
 {
   TimeStepController controller(rest, by_model, 0.9, 0);
   EXPECT_DOUBLE_EQ(controller.safe_step(), 0.9 * critical) << "from the bound at rest, before anything is found";
-  controller.observe(3 * rest, 10);
+  controller.observe(3 * rest, 0, 10);
   EXPECT_DOUBLE_EQ(controller.safe_step(), 0.9 * critical / 2);
   controller.reset();
   controller.renew_assembled({}, false, [](const auto&) { return 0.08 * rest; });
   const double found = 0.1 * rest;
   EXPECT_NEAR(controller.critical_step_at(0), critical / std::sqrt(0.1), 1e-9 * critical);
   EXPECT_NEAR(controller.alarming(), 0.1 * found, 1e-9 * found);
-  controller.observe(0.09 * found, 10);
+  controller.observe(0.09 * found, 0, 10);
   EXPECT_FALSE(choose(controller).bound_every_step);
   EXPECT_TRUE(choose(controller).bound_awaited) << "while tissue may still be stiffening";
+  EXPECT_LT(choose(controller).steps, 100) << "until the next search";
   EXPECT_NEAR(controller.safe_step(), 0.9 * critical / std::sqrt(0.109), 1e-9 * critical);
-  controller.observe(0.25 * found, 10);
+  controller.observe(0.25 * found, 0, 10);
   EXPECT_TRUE(choose(controller).bound_every_step) << "though this is a fortieth of the bound at rest";
   for (int plan = 0; plan < 20; ++plan)
-    controller.observe(0, 10);
+    controller.observe(0, 0, 10);
   EXPECT_NEAR(controller.safe_step(), 0.9 * critical / std::sqrt(0.125), 1e-9 * critical) << "until the next search";
   controller.renew_assembled({}, false, [](const auto&) { return 0.08 * rest; });
   EXPECT_NEAR(controller.safe_step(), 0.9 * critical / std::sqrt(0.088), 1e-9 * critical) << "the model is steady";

@@ -24,7 +24,7 @@ public:
 
   BackendTraits traits() const override;
   void list_arrays(ArrayList& list) override;
-  double run(const StepPlan& plan) override;
+  PlanMeasures run(const StepPlan& plan) override;
   void effects_switched() override;
   void masses_changed(const std::vector<std::int32_t>& nodes) override;
   Monitor monitor() override;

@@ -1,6 +1,8 @@
 #include "solver/cpu/cpu_solver.hpp"
 #include "solver/cpu/flush_denormals.hpp"
 
+#include "frontalis/physics/time_step.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -105,7 +107,7 @@ Work CpuSolver<Real>::work(bool open)
 }
 
 template <class Real>
-double CpuSolver<Real>::run(const StepPlan& plan)
+PlanMeasures CpuSolver<Real>::run(const StepPlan& plan)
 {
   const std::size_t muscles = model_->muscles.size();
   std::vector<float> activation(plan.steps * muscles, 0);
@@ -119,7 +121,7 @@ double CpuSolver<Real>::run(const StepPlan& plan)
   const bool prepared = std::any_of(parts.begin(), parts.end(), [](const auto* part) { return part->prepares(); });
   const bool pushed = std::any_of(parts.begin(), parts.end(), [](const auto* part) { return part->pushes(); });
   const bool grouped = std::any_of(parts.begin(), parts.end(), [](const auto* part) { return part->groups(); });
-  std::vector<Real> seen(team_.size(), 0);
+  std::vector<PlanMeasures> seen(team_.size());
   Arguments first = arguments(plan.dt, nullptr);
   kick(first, plan.first_kick);
   on_all_threads(
@@ -144,9 +146,9 @@ double CpuSolver<Real>::run(const StepPlan& plan)
             team_.barrier();
           const auto task =
               plan.bound_every_step || step + 1 == plan.steps ? KernelTask::step_and_bound : KernelTask::step;
-          const Real frequency_squared = kernel_(g, share.first_plane, share.end_plane, buffer, task);
-          if (!(frequency_squared <= seen[share.thread]))
-            seen[share.thread] = frequency_squared;
+          double& most = seen[share.thread].frequency_squared;
+          most = physics::larger_or_none(
+              most, static_cast<double>(kernel_(g, share.first_plane, share.end_plane, buffer, task)));
           for (NodePart<Real>* const part : parts)
             part->add_forces(share, { g.gain, g.dt, inverse_mass_.data(), g.next, g.v });
           if (account_)
@@ -182,13 +184,15 @@ double CpuSolver<Real>::run(const StepPlan& plan)
             team_.barrier();
           }
         }
+        seen[share.thread].speed = std::sqrt(static_cast<double>(this->fastest_squared(share)));
       });
   if (plan.steps % 2 == 1)
     u_.swap(next_);
-  double worst = 0;
-  for (const Real x : seen)
-    worst = std::isfinite(x) ? std::max(worst, static_cast<double>(x)) : static_cast<double>(x);
-  return worst;
+  PlanMeasures all;
+  for (const PlanMeasures& of : seen)
+    all = { physics::larger_or_none(all.frequency_squared, of.frequency_squared),
+            physics::larger_or_none(all.speed, of.speed) };
+  return all;
 }
 
 template class CpuSolver<float>;

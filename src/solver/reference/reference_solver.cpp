@@ -99,7 +99,7 @@ Work ReferenceSolver::work(bool open)
   return account_->work();
 }
 
-double ReferenceSolver::run(const StepPlan& plan)
+PlanMeasures ReferenceSolver::run(const StepPlan& plan)
 {
   std::vector<float> activation(model_->muscles.size(), 0);
   double* const u[3] = { u_[0].data(), u_[1].data(), u_[2].data() };
@@ -151,7 +151,7 @@ double ReferenceSolver::run(const StepPlan& plan)
     if (relaxed_.relax() && plan.relaxation[step] > 0)
       relax(plan.relaxation[step], before);
   }
-  return worst;
+  return { worst, std::sqrt(fastest_squared(share)) };
 }
 
 namespace

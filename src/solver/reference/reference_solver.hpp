@@ -18,7 +18,7 @@ public:
 
   BackendTraits traits() const override;
   void list_arrays(ArrayList& list) override;
-  double run(const StepPlan& plan) override;
+  PlanMeasures run(const StepPlan& plan) override;
   void effects_switched() override;
   Monitor monitor() override;
   Work work(bool open) override;

@@ -2,6 +2,7 @@
 
 #include "frontalis/byte_archive.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -32,6 +33,8 @@ public:
   double softest() const { return softest_; }
   /// Whether tissue may still be stiffening after a change of activations or poses.
   bool in_motion() const;
+  /// Number of steps until the next search is due, at least 1.
+  std::int64_t steps_left() const { return std::max<std::int64_t>(steps_valid_ - steps_, 1); }
   void steps_taken(int steps) { steps_ += steps; }
   /// Searches if this is due, and says whether it did. `activation`: the largest activations until the next call.
   /// `moving`: whether bones move, so that tissue stiffens where no muscle acts. `growth`: at present. `most`: bound at

@@ -16,7 +16,6 @@ constexpr double way_per_step = 0.1;  // longest path of a bone in a critical st
 constexpr double way_per_plan = 0.5;  // longest path of a bone in a plan, in shortest voxel edges
 // allowed jump of a bone's velocity, as path per step in shortest voxel edges
 constexpr double velocity_jump_allowed = 0.005;
-constexpr double fast_way_per_step = 0.03;   // of a fast bone, in shortest voxel edges
 constexpr double straight_share = 1.0 / 64;  // fraction of a motion over which a bone's path is taken as straight
 
 }  // namespace
@@ -80,11 +79,6 @@ double BoneMotionLimits::edges(const Poses& from, const Poses& to) const
     if (from[b].rotation != to[b].rotation || from[b].translation != to[b].translation)
       farthest = std::max(farthest, reach_[b].fastest_way(from[b], to[b]));
   return farthest / shortest_edge_;
-}
-
-bool BoneMotionLimits::fast(const Poses& from, const Poses& to, double seconds, double step) const
-{
-  return seconds > 0 && edges(from, to) * step > fast_way_per_step * seconds;
 }
 
 double BoneMotionLimits::longest_plan(const Poses& from, const Poses& to, double seconds) const

@@ -8,7 +8,7 @@
 namespace frontalis
 {
 
-/// Limits of the speed of bones and of plans, and signs of jumps and of fast motion.
+/// Limits of the speed of bones and of plans, and signs of jumps.
 class BoneMotionLimits
 {
 public:
@@ -27,9 +27,6 @@ public:
   /// Longest plan [s] in a motion of this duration: bones move by at most half of a voxel, because the tissue beside
   /// them may stiffen as they move. Infinite if the whole motion is no longer than that.
   double longest_plan(const Poses& from, const Poses& to, double seconds) const;
-  /// Whether a bone moves by more than 3 % of a voxel per step, about 6 % of the speed of sound, as a jaw does that
-  /// opens wide within 0.1 s.
-  bool fast(const Poses& from, const Poses& to, double seconds, double step) const;
   /// Records a motion that has started, with which jumps() compares the next motion.
   void moved(const Poses& from, double seconds);
   void archive(ByteArchive& archive) { archive(before_)(seconds_)(top_speed_); }

@@ -1,5 +1,6 @@
 #include "solver/stepping/host_backend.hpp"
 
+#include "frontalis/physics/time_step.hpp"
 #include "frontalis/physics/viscosity.hpp"
 #include "solver/skin/bound_points.hpp"
 
@@ -46,6 +47,20 @@ void HostBackend<Real, Relaxed>::rest()
   relaxed_.reset();
   for (const auto& part : parts_)
     part->reset();
+}
+
+template <class Real, class Relaxed>
+Real HostBackend<Real, Relaxed>::fastest_squared(const NodeShare& share) const
+{
+  constexpr int lanes = 8;
+  Real most[lanes] = {};
+  for (std::int32_t n = share.first_node; n < share.end_node; ++n)
+    most[n % lanes] =
+        physics::larger_or_none(most[n % lanes], v_[0][n] * v_[0][n] + v_[1][n] * v_[1][n] + v_[2][n] * v_[2][n]);
+  Real all = 0;
+  for (const Real lane : most)
+    all = physics::larger_or_none(all, lane);
+  return all;
 }
 
 template <class Real, class Relaxed>

@@ -62,6 +62,8 @@ protected:
   HostBackend(const BackendInput& input, std::size_t padding, const PartKernels<Real>& kernels);
 
   virtual void rest();
+  /// Square of the largest speed of the share's nodes [m2/s2]; NaN if one is not finite.
+  Real fastest_squared(const NodeShare& share) const;
   static std::array<const Real*, 3> pointers(const Components& c)
   {
     return { { c[0].data(), c[1].data(), c[2].data() } };

@@ -41,6 +41,13 @@ struct BackendTraits
   int steps_per_check = 512;       ///< Solver::steps_per_check
 };
 
+/// What a backend measures in a plan.
+struct PlanMeasures
+{
+  double frequency_squared = 0;  ///< largest bound of a squared frequency [1/s2]; NaN if displacements are not finite
+  double speed = 0;              ///< largest speed of a node after the last step [m/s]
+};
+
 /// Data that a time stepper shares with its backend.
 struct BackendInput
 {
@@ -60,9 +67,8 @@ public:
   virtual BackendTraits traits() const = 0;
   virtual void list_arrays(ArrayList& list) = 0;
 
-  /// Runs the plan's steps. Returns the largest squared frequency bound [1/s2] found in them, or NaN if displacements
-  /// are not finite. If the plan allows it, the returned bound may be that of the previous plan.
-  virtual double run(const StepPlan& plan) = 0;
+  /// Runs the plan's steps. If the plan allows it, the measures may be those of the previous plan.
+  virtual PlanMeasures run(const StepPlan& plan) = 0;
   /// Called after Conditions::running and the bounds have changed. Effects that are switched on again start without
   /// history.
   virtual void effects_switched() = 0;

@@ -33,11 +33,11 @@ struct StepPlan
   /// Duration for which forces change velocities in the first step [s]. Velocities belong to the middle of a step, so
   /// that this is half of the previous step plus half of dt.
   double first_kick = 0;
-  double time = 0;                 ///< time at the start of the plan [s]
-  bool bound_every_step = false;   ///< true: measure the frequency bound in every step; false: in the last one only
-  bool bound_awaited = false;      ///< true: run() must return what this plan measured, not the previous one
-  double alarming = 0;             ///< run() waits for what this plan measures if the previous one measured more [1/s2]
-  Controls begin, end;             ///< activations as fibres feel them
+  double time = 0;                ///< time at the start of the plan [s]
+  bool bound_every_step = false;  ///< true: measure the frequency bound in every step; false: in the last one only
+  bool bound_awaited = false;     ///< true: run() must return the measures of this plan, not of the previous one
+  double alarming = 0;            ///< run() waits for the measures of this plan if the previous bound was higher [1/s2]
+  Controls begin, end;            ///< activations as fibres feel them
   std::vector<double> relaxation;  ///< one per step: by how much viscous stresses relax after it [s]
 
   double fraction(int step) const { return (step + 1.0) / steps; }

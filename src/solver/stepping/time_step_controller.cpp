@@ -17,12 +17,15 @@ namespace
 constexpr double cautious_share = 0.55;  // cautious steps: fraction of the critical step
 constexpr int cautious_plan = 8;         // number of steps in a cautious plan
 constexpr int vibration_plan = 32;       // largest number of steps in a plan while tissue vibrates
+// Longest path of a node in a step, in shortest voxel edges. Tissue that moves faster crushes voxels within a few
+// steps.
+constexpr double way_per_step = 0.15;
 // The following constants define signs of fast change, and the number of cautious steps after each.
 constexpr double growth_between_plans = 1.1;  // ratio of covered squared frequencies of successive plans
 constexpr int steps_after_stiffening = 128;
 constexpr float activation_change_allowed = 0.3F;  // change of a muscle's activation within a plan
 constexpr int steps_after_a_switch = 48;
-// After a jump of a bone's velocity, or fast motion: the shorter of the two.
+// After a jump of a bone's velocity: the shorter of the two.
 constexpr int steps_after_a_jump = 1000;
 constexpr double time_after_a_jump = 0.03;  // [s]
 // Tissue that is much stiffer than at rest and changes from plan to plan vibrates; a contraction stiffens tissue
@@ -95,8 +98,11 @@ double TimeStepController::alarming() const { return growth_between_plans * cove
 TimeStepController::Choice TimeStepController::choose(double remaining, double longest, double longest_plan,
                                                       const BackendTraits& backend) const
 {
-  const bool vibrates = state_.vibration_steps_left > 0;
+  const bool vibrates = state_.vibration_steps_left > 0, in_motion = state_.assembled.in_motion();
   double dt = safe_step();
+  const bool fast = state_.speed * dt > 0.5 * way_per_step;
+  if (fast)
+    dt = std::min(dt, way_per_step / state_.speed);
   int most_steps = static_cast<int>(std::clamp(backend.seconds_per_plan / dt, double(backend.fewest_steps_per_plan),
                                                double(backend.most_steps_per_plan)));
   if (longest_plan < most_steps * dt)
@@ -108,14 +114,17 @@ TimeStepController::Choice TimeStepController::choose(double remaining, double l
     most_steps = std::max(1, static_cast<int>(std::min<double>(longest_plan / dt, cautious_plan)));
   else if (vibrates)
     most_steps = std::min(vibration_plan, most_steps);
+  if (in_motion)
+    most_steps = static_cast<int>(std::min<std::int64_t>(most_steps, state_.assembled.steps_left()));
   // Without the tolerance, a rounding error could add a step.
   const double steps_left = std::ceil(remaining / std::min(dt, longest) * (1 - 1e-9));
   return { static_cast<int>(std::min<double>(steps_left, most_steps)), remaining / steps_left, steps_left <= most_steps,
-           cautious, cautious || vibrates || state_.assembled.in_motion() };
+           cautious, cautious || vibrates || fast || in_motion };
 }
 
-void TimeStepController::observe(double measured, int steps)
+void TimeStepController::observe(double measured, double speed, int steps)
 {
+  state_.speed = speed;
   const double now = covered(measured),
                at_rest = state_.assembled.known() ? state_.assembled.softest() : bound_at_rest_;
   const bool changes = std::abs(now - state_.latest_covered) > vibration_change * state_.latest_covered;
@@ -163,6 +172,7 @@ void TimeStepController::displacements_set(double measured)
   if (std::isfinite(measured))
     state_.measured = std::max(measured, measured_at_rest());
   state_.latest_measured = state_.measured;
+  state_.speed = 0;
   state_.cautious_steps_left = steps_after_stiffening;
   state_.assembled.discard();
 }

@@ -7,8 +7,10 @@ namespace frontalis
 {
 
 /// Chooses the length of steps, and the number of steps until the backend measures again, from what a backend measures,
-/// the activations, and jumps and speeds of bones. A backend measures the bound of the squared frequency at nodes or,
-/// if the highest frequency of the assembled model sets the time step, the growth of this bound since rest [1/s2].
+/// the activations, and jumps of bones. A backend measures the bound of the squared frequency at nodes or, if the
+/// highest frequency of the assembled model sets the time step, the growth of this bound since rest [1/s2]. It also
+/// measures how fast nodes move: a node that moves far in a step may crush a voxel, whose stiffness then grows before
+/// it is measured.
 ///
 /// Just below the critical step, tissue that stiffens as it vibrates gains or loses energy in every cycle. The
 /// controller is therefore cautious for some steps after signs of fast change: steps are shorter, plans have few steps,
@@ -22,13 +24,14 @@ public:
     double measured = 0;         ///< from which steps are chosen [1/s2]
     double latest_measured = 0;  ///< in the latest plan [1/s2]
     double latest_covered = 0;   ///< squared frequency that was covered in the latest plan [1/s2]
+    double speed = 0;            ///< largest of a node, in shortest voxel edges [1/s]
     int cautious_steps_left = 0;
     int vibration_steps_left = 0;
     AssembledEstimate assembled;
 
     void archive(ByteArchive& archive)
     {
-      archive(measured)(latest_measured)(latest_covered)(cautious_steps_left)(vibration_steps_left);
+      archive(measured)(latest_measured)(latest_covered)(speed)(cautious_steps_left)(vibration_steps_left);
       assembled.archive(archive);
     }
   };
@@ -58,14 +61,17 @@ public:
   /// `longest` [s].
   Choice choose(double remaining, double longest, double longest_plan, const BackendTraits& backend) const;
 
-  /// Records the most that a backend measured in the latest plan or in the plan before it.
-  void observe(double measured, int steps);
+  /// Records the most that a backend measured in the latest plan or in the plan before it. `speed`: as in State.
+  void observe(double measured, double speed, int steps);
+  /// Records the speed after velocities were set from outside.
+  void velocities_set(double speed) { state_.speed = speed; }
   /// Whether a muscle is switched on or off between these activations. If so, the controller becomes cautious, because
   /// the muscle's voxels stiffen at once, and the voxels that it pulls stiffen a little later.
   bool muscles_switched(const std::vector<float>& from, const std::vector<float>& to);
-  /// Becomes cautious, because the velocity of a bone has jumped or is high (BoneMotionLimits).
+  /// Becomes cautious, because the velocity of a bone has jumped (BoneMotionLimits).
   void bone_jumped();
-  /// Resets the controller after displacements were set from outside. `measured`: by the backend at these.
+  /// Resets the controller after displacements were set from outside, with velocities of 0. `measured`: by the backend
+  /// at these.
   void displacements_set(double measured);
   /// Sets the bound at rest [1/s2], which changes when effects are switched.
   void set_bound_at_rest(double squared)

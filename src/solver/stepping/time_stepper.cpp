@@ -108,6 +108,10 @@ void TimeStepper::set_displacements(const NodalVectors& in)
 void TimeStepper::set_velocities(const NodalVectors& in)
 {
   backend_->set(NodalField::velocities, in);
+  double fastest = 0;
+  for (const auto& v : in)
+    fastest = std::max(fastest, std::hypot(v[0], v[1], v[2]));
+  controller_.velocities_set(fastest / shortest_edge());
   open_ledger();
 }
 
@@ -137,6 +141,8 @@ void TimeStepper::check(double seconds, const Controls& target) const
     throw Error("the motion has diverged earlier: reset the solver first");
 }
 
+double TimeStepper::shortest_edge() const { return *std::min_element(model_->spacing.begin(), model_->spacing.end()); }
+
 bool TimeStepper::advance(double seconds, const Controls& asked, const std::function<bool()>& go_on)
 {
   check(seconds, asked);
@@ -155,22 +161,20 @@ bool TimeStepper::advance(double seconds, const Controls& asked, const std::func
   {
     if (model_->time_step_estimate == TimeStepEstimate::assembled)
       renew_assembled_estimate(target);
-    if (motion_.bones.fast(from.bone, target.bone, seconds, time_step()))
-      controller_.bone_jumped();
     const auto choice =
         controller_.choose(end - motion_.time, longest_step, longest_plan(target, end - motion_.time), traits_);
     const double reached = choice.reaches_end ? end : motion_.time + choice.steps * choice.dt;
     const Controls next = choice.reaches_end ? target : interpolate(from, target, (reached - begin) / seconds);
     const StepPlan plan = plan_to(next, choice);
-    const double measured = backend_->run(plan);
+    const PlanMeasures measured = backend_->run(plan);
     motion_.time = reached;
     motion_.latest_step = plan.dt;
     motion_.controls = next;
     profile_.steps += plan.steps;
-    motion_.diverged = !std::isfinite(measured);
+    motion_.diverged = !std::isfinite(measured.frequency_squared) || !std::isfinite(measured.speed);
     if (motion_.diverged)
       throw Diverged(fmt::format("the motion diverged at {:g} s: displacements are no longer finite", motion_.time));
-    controller_.observe(measured, plan.steps);
+    controller_.observe(measured.frequency_squared, measured.speed / shortest_edge(), plan.steps);
     if (go_on && motion_.time < end && !go_on())
       return false;
   }

@@ -78,6 +78,7 @@ private:
   void renew_conditions();
   /// Longest duration of a plan [s] in a motion that reaches `target` after `seconds`; infinite without a limit.
   double longest_plan(const Controls& target, double seconds) const;
+  double shortest_edge() const;  // of a voxel [m]
   void renew_assembled_estimate(const Controls& asked);
   /// Squared highest frequency [1/s2] at these activations, after mass has been added where that is wanted.
   double search_frequency(const std::vector<float>& activation);
