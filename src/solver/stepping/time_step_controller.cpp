@@ -27,7 +27,7 @@ constexpr float activation_change_allowed = 0.3F;  // change of a muscle's activ
 constexpr int steps_after_a_switch = 48;
 // After a jump of a bone's velocity: the shorter of the two.
 constexpr int steps_after_a_jump = 1000;
-constexpr double time_after_a_jump = 0.03;  // [s]
+constexpr double time_after_a_jump = 0.01;  // [s]
 // Tissue that is much stiffer than at rest and changes from plan to plan vibrates; a contraction stiffens tissue
 // slowly.
 constexpr double stiffening_ratio = 4;     // ratio of the squared frequency to that at rest
