@@ -20,6 +20,7 @@ constexpr int vibration_plan = 32;       // largest number of steps in a plan wh
 // Longest path of a node in a step, in shortest voxel edges. Tissue that moves faster crushes voxels within a few
 // steps.
 constexpr double way_per_step = 0.15;
+constexpr double least_share = 0.1;  // of the step for that; what needs less is flung away, which the guard reports
 // The following constants define signs of fast change, and the number of cautious steps after each.
 constexpr double growth_between_plans = 1.1;  // ratio of covered squared frequencies of successive plans
 constexpr int steps_after_stiffening = 128;
@@ -100,9 +101,10 @@ TimeStepController::Choice TimeStepController::choose(double remaining, double l
 {
   const bool vibrates = state_.vibration_steps_left > 0, in_motion = state_.assembled.in_motion();
   double dt = safe_step();
-  const bool fast = state_.speed * dt > 0.5 * way_per_step;
+  const double longest_way = slow_share_ * way_per_step;
+  const bool fast = state_.speed * dt > 0.5 * longest_way;
   if (fast)
-    dt = std::min(dt, way_per_step / state_.speed);
+    dt = std::clamp(longest_way / state_.speed, least_share * dt, dt);
   int most_steps = static_cast<int>(std::clamp(backend.seconds_per_plan / dt, double(backend.fewest_steps_per_plan),
                                                double(backend.most_steps_per_plan)));
   if (longest_plan < most_steps * dt)
