@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <memory>
+#include <utility>
 
 namespace frontalis
 {
@@ -43,12 +45,19 @@ void leave_out_unused(Scene& scene)
 
 // A generated forehead has triangles as small as voxels. A study of accuracy changes the voxels afterwards, and all its
 // models have the same triangles.
-void divide_foreheads(Scene& scene)
+void divide_forehead(Surface& surface, double voxel)
 {
-  const double voxel = *std::min_element(scene.accuracy.voxel.begin(), scene.accuracy.voxel.end());
-  for (Surface& surface : scene.surfaces)
-    if (surface.shape && surface.shape->kind == Shape::Kind::forehead && surface.shape->edge <= 0)
-      surface.shape->edge = std::min(surface.shape->edge_or_default(), voxel);
+  if (!surface.shape)
+    return;
+  Shape& shape = *surface.shape;
+  if (shape.kind == Shape::Kind::forehead && shape.edge <= 0)
+    shape.edge = std::min(shape.edge_or_default(), voxel);
+  if (shape.below)
+  {
+    auto below = std::make_shared<Surface>(*shape.below);
+    divide_forehead(*below, voxel);
+    shape.below = std::move(below);
+  }
 }
 
 // Checks the muscles that materials name. Materials are read before muscles, because muscles name materials too.
@@ -94,7 +103,8 @@ void read_root(const Node& root, const SceneOptions& options, Scene& scene)
   read_expressions(action_units, mapping.optional("expressions"), scene, names);
   read_demo(mapping.optional("demo"), scene, names);
   leave_out_unused(scene);
-  divide_foreheads(scene);
+  for (Surface& surface : scene.surfaces)
+    divide_forehead(surface, *std::min_element(scene.accuracy.voxel.begin(), scene.accuracy.voxel.end()));
   check_tissues(scene, tissues, names);
 }
 

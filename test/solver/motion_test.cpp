@@ -180,6 +180,20 @@ TEST_P(Motion, FreeFallIsExact)
     EXPECT_NEAR(v[2], -0.5 * 9.81 * 0.02 * 0.02, 0.5 * 9.81 * 0.02 * solver_->time_step() * 1.1 + 1e-6);
 }
 
+TEST_P(Motion, FastNodesMoveLittleInAStep)
+{
+  const Model model = test::block_model();
+  const auto solver_ = solver(model);
+  const double slow = solver_->time_step(), speed = 0.6 * model.spacing[0] / slow, seconds = 100 * slow;
+  solver_->set_velocities(Vectors(model.nodes.size(), { { 0, 0, speed } }));
+  solver_->advance(0.3 * seconds, {});
+  EXPECT_NEAR(solver_->time_step(), slow / 4, 0.01 * slow) << "as measured";
+  solver_->advance(0.7 * seconds, {});
+  EXPECT_NEAR(static_cast<double>(solver_->profile().steps), 400, 40);
+  solver_->reset();
+  EXPECT_NEAR(solver_->time_step(), slow, 0.01 * slow);
+}
+
 TEST_P(Motion, BonesCarryTheirNodes)
 {
   test::BlockSettings s;

@@ -142,13 +142,13 @@ std::vector<Vector3d> inward_normals(const TriangleMesh& surface, const LocalFra
   return normals;
 }
 
-/// The triangles of a load that are clear of the surfaces of SceneLoad::clear_of. Because the load acts at vertices, no
-/// edge is longer than `longest` [m].
-TriangleMesh clear_mesh(const SceneLoad& load, const PreparedSurfaces& surfaces, double longest,
+/// The triangles of a load near the tissue that are clear of the surfaces of SceneLoad::clear_of, with edges of at most
+/// `longest` [m].
+TriangleMesh clear_mesh(const SceneLoad& load, const PreparedSurfaces& surfaces, const Box& tissue, double longest,
                         const std::string& place)
 {
-  TriangleMesh mesh =
-      cut_mesh(refined(named_surface(surfaces, load.surface, place).mesh(), to_box(load.crop), longest), load.crop);
+  const Box box = to_box(load.crop).intersection(tissue);
+  TriangleMesh mesh = cut_mesh(refined(named_surface(surfaces, load.surface, place).mesh(), box, longest), load.crop);
   for (const std::string& name : load.clear_of)
   {
     const TriangleTree& other = named_surface(surfaces, name, place).tree();
@@ -282,6 +282,8 @@ void bind_surfaces(const Scene& scene, const PreparedSurfaces& surfaces, const L
 {
   const double extrapolation = extrapolation_of(scene, model);
   const PointBinder binder(model, frame, extrapolation);
+  Box tissue = frame.grid_box(model);
+  tissue = Box(tissue.min().array() - extrapolation, tissue.max().array() + extrapolation);
 
   if (!scene.skin.surface.empty())
   {
@@ -323,7 +325,7 @@ void bind_surfaces(const Scene& scene, const PreparedSurfaces& surfaces, const L
     {
       const std::string place = place_in_scene(scene, "load", load);
       const TriangleMesh surface =
-          clear_mesh(load, surfaces, *std::min_element(model.spacing.begin(), model.spacing.end()), place);
+          clear_mesh(load, surfaces, tissue, *std::min_element(model.spacing.begin(), model.spacing.end()), place);
       BoundMesh bound = bind_mesh(loaded_mesh(scene, load, surface, frame, binder), Region(), frame, binder, monitor);
       const std::size_t left_out = surface.triangles.size() - bound.mesh.triangles.size();
       if (bound.mesh.triangles.empty())

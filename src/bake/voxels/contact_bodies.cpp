@@ -81,12 +81,14 @@ TriangleMesh refined(const TriangleMesh& surface, const Box& box, double longest
   TriangleMesh mesh;
   mesh.vertices = surface.vertices;
   std::vector<Triangle> left;
-  for (const Triangle& t : surface.triangles)
+  const auto keep = [&](const Triangle& t)
   {
-    const auto [a, b, c] = corners(surface, t);
+    const auto [a, b, c] = corners(mesh, t);
     if (Box(a).extend(b).extend(c).intersects(box))
       left.push_back(t);
-  }
+  };
+  for (const Triangle& t : surface.triangles)
+    keep(t);
   while (!left.empty())
   {
     const Triangle t = left.back();
@@ -107,8 +109,8 @@ TriangleMesh refined(const TriangleMesh& surface, const Box& box, double longest
     const std::int32_t from = t[edge], to = t[(edge + 1) % 3], opposite = t[(edge + 2) % 3];
     const auto middle = static_cast<std::int32_t>(mesh.vertices.size());
     mesh.vertices.push_back(to_array(0.5 * (vertex(mesh, from) + vertex(mesh, to))));
-    left.push_back({ from, middle, opposite });
-    left.push_back({ middle, to, opposite });
+    keep({ from, middle, opposite });
+    keep({ middle, to, opposite });
   }
   join_vertices(mesh);
   return mesh;

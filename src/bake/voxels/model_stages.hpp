@@ -53,6 +53,11 @@ struct LocalFrame
   {
     return to_scene(to_vector(model.spacing).cwiseProduct(Vector3d(i, j, k)));
   }
+  /// The box around all voxels, in the scene [m]. The axes of the grid are those of the scene in another order.
+  Box grid_box(const Model& model) const
+  {
+    return Box(grid_point(model, 0, 0, 0)).extend(grid_point(model, model.size[0], model.size[1], model.size[2]));
+  }
   /// Index of the voxel to whose tissue a point near a gap belongs; -1 for a point that is not near a gap. `local`: the
   /// point in local coordinates [m].
   std::int32_t owner(const Model& model, const VoxelIndex& index, const Vector3d& local) const;

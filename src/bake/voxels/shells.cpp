@@ -147,11 +147,9 @@ void bind_shells(const Scene& scene, const PreparedSurfaces& surfaces, const Loc
     const std::string place = place_in_scene(scene, "layer", layer);
     const Volume& volume = scene.volumes[index_of(scene.volumes, layer.volume, place, "volume")];
     // Only the part near the tissue is used, because triangles of the surface may be larger than the tissue.
-    Box tissue;
-    for (const auto& corner : { Vector3d(0, 0, 0), Vector3d(model.size[0], model.size[1], model.size[2]) })
-      tissue.extend(frame.grid_point(model, corner[0], corner[1], corner[2]));
-    BoundMesh near = bind_mesh(refined(named_surface(surfaces, layer.surface, place).mesh(), tissue, 2 * edge),
-                               volume.crop, frame, model, 2 * edge, monitor);
+    const TriangleMesh& whole = named_surface(surfaces, layer.surface, place).mesh();
+    BoundMesh near =
+        bind_mesh(refined(whole, frame.grid_box(model), 2 * edge), volume.crop, frame, model, 2 * edge, monitor);
     TriangleMesh surface = near.mesh;
     if (!surface.triangles.empty())
       surface = with_equal_edges(surface, edge_ratio * edge);

@@ -84,7 +84,8 @@ double TimeStepController::critical_step(double share) const { return share * cr
 double TimeStepController::safe_step() const
 {
   const double critical = critical_step(1);
-  return slow_share_ * (fixed_step_ > 0 ? std::min(fixed_step_, critical) : safety_share_ * critical);
+  const double slow = fixed_step_ > 0 ? std::min(fixed_step_, critical) : safety_share_ * critical;
+  return slow_share_ * std::clamp(way_per_step / state_.speed, least_share * slow, slow);
 }
 
 void TimeStepController::slow_down(double share)
@@ -101,10 +102,7 @@ TimeStepController::Choice TimeStepController::choose(double remaining, double l
 {
   const bool vibrates = state_.vibration_steps_left > 0, in_motion = state_.assembled.in_motion();
   double dt = safe_step();
-  const double longest_way = slow_share_ * way_per_step;
-  const bool fast = state_.speed * dt > 0.5 * longest_way;
-  if (fast)
-    dt = std::clamp(longest_way / state_.speed, least_share * dt, dt);
+  const bool fast = state_.speed * dt > 0.5 * slow_share_ * way_per_step;
   int most_steps = static_cast<int>(std::clamp(backend.seconds_per_plan / dt, double(backend.fewest_steps_per_plan),
                                                double(backend.most_steps_per_plan)));
   if (longest_plan < most_steps * dt)
@@ -174,7 +172,6 @@ void TimeStepController::displacements_set(double measured)
   if (std::isfinite(measured))
     state_.measured = std::max(measured, measured_at_rest());
   state_.latest_measured = state_.measured;
-  state_.speed = 0;
   state_.cautious_steps_left = steps_after_stiffening;
   state_.assembled.discard();
 }

@@ -70,8 +70,8 @@ public:
   bool muscles_switched(const std::vector<float>& from, const std::vector<float>& to);
   /// Becomes cautious, because the velocity of a bone has jumped (BoneMotionLimits).
   void bone_jumped();
-  /// Resets the controller after displacements were set from outside, with velocities of 0. `measured`: by the backend
-  /// at these.
+  /// Resets the controller, but for the speed, after displacements were set from outside. `measured`: by the backend at
+  /// these.
   void displacements_set(double measured);
   /// Sets the bound at rest [1/s2], which changes when effects are switched.
   void set_bound_at_rest(double squared)

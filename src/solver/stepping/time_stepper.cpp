@@ -102,6 +102,7 @@ void TimeStepper::reset()
 void TimeStepper::set_displacements(const NodalVectors& in)
 {
   backend_->set(NodalField::displacements, in);
+  controller_.velocities_set(0);
   displacements_were_set();
 }
 
