@@ -118,7 +118,7 @@ TEST(AssembledEstimate, is_found_at_equal_times_while_steps_are_long)
     search.found = std::min(bound, 4 / (step * step));
     search.renew(estimate, 0);
     const int steps = search.steps_until_next(estimate, 0);
-    EXPECT_EQ(steps, step > 4e-4 ? 80 : step > 2e-4 ? 100 : 200) << step;
+    EXPECT_EQ(steps, step > 4e-4 ? 50 : step > 2e-4 ? 70 : 200) << step;
   }
 }
 

@@ -15,8 +15,8 @@ constexpr double steady_change = 0.03;
 // Numbers of steps between searches. A search takes as long as 10 to 40 steps. After a change of activations or while
 // bones move, the tissue stiffens as it follows: the next search is then after `shortest_time`, as far as the limits of
 // steps allow it, and each further one after twice as many steps, or after `longest_valid` if the model is steady.
-constexpr double shortest_time = 0.03;  // [s]
-constexpr std::int64_t fewest_valid = 75, shortest_valid = 200, longest_valid = 2000;
+constexpr double shortest_time = 0.02;  // [s]
+constexpr std::int64_t fewest_valid = 50, shortest_valid = 200, longest_valid = 2000;
 // The ratio is found for activations that are higher by this much than the present ones, so that searches are few while
 // activations grow.
 constexpr float activation_ahead = 0.5F;
