@@ -120,7 +120,7 @@ void CudaSolver::list_arrays(ArrayList& list)
   list.add(Effect::elasticity, "controls", activation_.bytes());
   for (const auto& slot : slots_)
     list.add(Effect::elasticity, "controls", slot.controls.bytes());
-  // The frequency bound of the latest plan limits the steps of later plans and thus belongs to the state.
+  // What the latest plan measured limits the steps of later plans and thus belongs to the state.
   list.add_state(slots_[(plans_ + plan_slots - 1) % plan_slots].seen.data(), plan_measures * sizeof(std::uint32_t));
   if (account_)
     account_->list_arrays(effect_of_fibres(*model_), list);
