@@ -11,6 +11,7 @@
 #include "bake/voxels/shells.hpp"
 #include "frontalis/model/effects.hpp"
 
+#include <map>
 #include <set>
 
 namespace frontalis
@@ -18,7 +19,10 @@ namespace frontalis
 namespace
 {
 
-constexpr double least_in_tissue = 0.4;  // share of a muscle's volume below which its place is doubtful
+constexpr double least_in_tissue = 0.4;   // share of a muscle's volume below which its place is doubtful
+constexpr double least_of_muscle = 0.05;  // and below which the bake ends
+constexpr double sides_differ = 1.3;      // ratio of these shares of a muscle and its counterpart above which it warns
+constexpr double largest_tissue = 0.6;    // [m]
 
 /// Warns of surfaces that the scene cuts out of the tissue, such as bones, but that lie nowhere near it or are smaller
 /// than a voxel: their length unit or their place is wrong, and tissue fills the place where they should be.
@@ -42,9 +46,19 @@ void find_surfaces_apart(const Scene& scene, const Volumes& volumes, BakeMonitor
     }
 }
 
+/// Warns of tissue that is larger than a head: its length unit is probably wrong.
+void check_size(const Scene& scene, const Volumes& volumes, BakeMonitor& monitor)
+{
+  const Box tissue = volumes.tissue_box();
+  if (const double extent = tissue.sizes().maxCoeff(); extent > largest_tissue)
+    monitor.warn("{}: the tissue spans {}, more than a head; check 'unit': {}", scene.file,
+                 box_text(tissue, scene.unit), unit_advice(extent, scene.unit));
+}
+
 /// Throws Error if a volume lies outside the tissue, and reports how much of each muscle was clipped.
 void check_volumes(const Scene& scene, const Volumes& volumes, const Voxels& voxels, BakeMonitor& monitor)
 {
+  std::map<std::string, double> in_tissue;  // share of a muscle's volume
   for (std::size_t v = 0; v < volumes.entries().size(); ++v)
   {
     const Volumes::Entry& entry = volumes.entries()[v];
@@ -77,11 +91,29 @@ void check_volumes(const Scene& scene, const Volumes& volumes, const Voxels& vox
     }
     monitor.found("{}: {:.4g} cm3 in the tissue, {:.4g} cm3 by its surface ({:.0f} % clipped){}", muscle, 1e6 * size,
                   1e6 * whole, 100 * std::max(0.0, 1 - size / whole), closed ? "" : "; the surface is open");
+    if (closed)
+      in_tissue[scene.muscles[entry.muscle].name] = size / whole;
+    if (closed && size < least_of_muscle * whole)
+      throw failure(
+          "{}: {} lies in the tissue with only {:.2g} % of its volume; the rest, between {}, is in bone, outside "
+          "of the skin or cut off by a depth or crop: check the place of its surface",
+          volumes.place(*entry.volume), muscle, 100 * size / whole, box_text(extent, scene.unit));
     if (closed && size < least_in_tissue * whole)
       monitor.warn(
           "{} lies in the tissue with {:.0f} % of its volume; the rest, between {}, is in bone, outside of the skin or "
           "cut off by a depth or crop: see the table of muscles that --report prints, and check the surface",
           muscle, 100 * size / whole, box_text(extent, scene.unit));
+  }
+  for (const auto& [name, share] : in_tissue)
+  {
+    const auto other = name.size() > 5 && name.substr(name.size() - 5) == "_left"
+                           ? in_tissue.find(name.substr(0, name.size() - 5) + "_right")
+                           : in_tissue.end();
+    if (other != in_tissue.end() && std::max(share, other->second) > sides_differ * std::min(share, other->second))
+      monitor.warn(
+          "muscle '{}' lies in the tissue with {:.0f} % of its volume, '{}' with {:.0f} %: the face will move "
+          "more on one side; check both surfaces",
+          name, 100 * share, other->first, 100 * other->second);
   }
 }
 
@@ -139,10 +171,11 @@ Model bake(const Scene& given, BakeReport* report, const BakeProgress& progress)
 
   monitor.begin("surfaces");
   const auto surfaces = prepare_surfaces(scene, monitor);
-  check_sides(scene, surfaces);
+  check_sides(scene, surfaces, monitor);
   const double sample_spacing = to_vector(scene.accuracy.voxel).minCoeff() / scene.accuracy.samples;
   const Volumes volumes(scene, surfaces, sample_spacing);
   check_openings(scene, volumes);
+  check_size(scene, volumes, monitor);
   const Grid grid = make_grid(scene, volumes);
   find_surfaces_apart(scene, volumes, monitor);
 
@@ -202,7 +235,7 @@ Model bake(const Scene& given, BakeReport* report, const BakeProgress& progress)
     report->muscles = measure_muscles(volumes, fibres, model, monitor);
   }
   monitor.begin("check");
-  weaken_muscles(scene, frame, model);
+  weaken_muscles(scene, frame, model, report);
   check_model(model);
   monitor.finish();
   return model;

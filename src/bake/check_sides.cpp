@@ -2,6 +2,7 @@
 
 #include "bake/messages.hpp"
 
+#include <cmath>
 #include <map>
 
 namespace frontalis
@@ -16,14 +17,14 @@ struct Thing
 };
 
 /// Examines things by their names; those without a counterpart are ignored.
-void check_pairs(const Scene& scene, const std::map<std::string, Thing>& things)
+void check_pairs(const Scene& scene, const std::map<std::string, Thing>& things, BakeMonitor& monitor)
 {
   constexpr double least_distance = 1e-3;  // [m]
   constexpr double clear = 0.5;            // cosine; axes of a scene without 'frame' may lie in any direction
   const std::string left_end = "_left";
   const Vector3d left = to_vector(scene.frame.up).cross(to_vector(scene.frame.forward)).normalized();
-  std::size_t pairs = 0, exchanged = 0;
-  std::string first;
+  std::size_t pairs = 0, exchanged = 0, across = 0;
+  std::string first, first_across;
   for (const auto& [name, thing] : things)
   {
     const std::size_t end = name.size() - std::min(name.size(), left_end.size());
@@ -37,6 +38,9 @@ void check_pairs(const Scene& scene, const std::map<std::string, Thing>& things)
       throw failure(
           "{} lies where '{}' does; give each its own data, or use one of them, named without a side, for both",
           thing.place, other->first);
+    if (apart.norm() > least_distance && std::abs(left.dot(apart)) < clear * apart.norm() && across++ == 0)
+      first_across =
+          fmt::format("{} lies {} from '{}'", thing.place, length_text(apart.norm(), scene.unit), other->first);
     if (apart.norm() < least_distance || left.dot(apart) > -clear * apart.norm())
       continue;
     if (exchanged++ == 0)
@@ -49,23 +53,28 @@ void check_pairs(const Scene& scene, const std::map<std::string, Thing>& things)
                       ? "the data are mirrored or turned, or 'forward' and 'up' of the scene's 'frame' are "
                         "not those of the data"
                       : "exchange their names or files");
+  if (pairs > 0 && across == pairs)
+    monitor.warn(
+        "{}, but not to its left in the face frame: 'forward' and 'up' of the scene's 'frame' are not those of "
+        "the data, so that directions and pictures will be wrong",
+        first_across);
 }
 
 }  // namespace
 
-void check_sides(const Scene& scene, const PreparedSurfaces& surfaces)
+void check_sides(const Scene& scene, const PreparedSurfaces& surfaces, BakeMonitor& monitor)
 {
   std::map<std::string, Thing> things;
   for (const Surface& given : scene.surfaces)
     for (const auto& surface : surfaces)
       if (given.name == surface->name())
         things[given.name] = { place_in_scene(scene, "surface", given), surface->box() };
-  check_pairs(scene, things);
+  check_pairs(scene, things, monitor);
   things.clear();
   for (const SceneLandmark& landmark : scene.landmarks)
     if (!landmark.head)
       things[landmark.name] = { place_in_scene(scene, "landmark", landmark), Box(to_vector(landmark.position)) };
-  check_pairs(scene, things);
+  check_pairs(scene, things, monitor);
 }
 
 }  // namespace frontalis

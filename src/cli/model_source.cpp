@@ -98,13 +98,13 @@ BakeSummary summary_of(const BakeReport& report)
                     1e6 * muscle.mesh, 1e6 * muscle.in_bone, 1e6 * muscle.beyond_skin, 1e6 * muscle.elsewhere,
                     muscle.nurbs > 0 ? fmt::format("{:.3f}", 1e6 * muscle.nurbs) : "-", muscle.name);
   if (!report.forces.empty())
-    summary.muscles +=
-        fmt::format("strength {:>8} {:>9} {:>9} {:>7} {:>8}\n", "fibre mm", "model mm2", "people", "factor", "force N");
+    summary.muscles += fmt::format("strength {:>8} {:>9} {:>9} {:>7} {:>8} {:>7}\n", "fibre mm", "model mm2", "people",
+                                   "factor", "force N", "left %");
   for (const BakeReport::MuscleForce& force : report.forces)
-    summary.muscles +=
-        fmt::format("strength {:8.1f} {:9.1f} {:>9} {:7.2f} {:8.2f}  {}\n", 1e3 * force.length,
-                    1e6 * force.cross_section, force.given > 0 ? fmt::format("{:.1f}", 1e6 * force.given) : "-",
-                    force.given > 0 ? force.given / force.cross_section : 1.0, force.force, force.name);
+    summary.muscles += fmt::format(
+        "strength {:8.1f} {:9.1f} {:>9} {:7.2f} {:8.2f} {:7.0f}  {}\n", 1e3 * force.length, 1e6 * force.cross_section,
+        force.given > 0 ? fmt::format("{:.1f}", 1e6 * force.given) : "-",
+        force.given > 0 ? force.given / force.cross_section : 1.0, force.force, 100 * force.left, force.name);
   return summary;
 }
 
@@ -159,9 +159,9 @@ Model bake_scene(const ModelSource& source, BakeSummary* summary)
       model = bake_interruptibly(scene, &report,
                                  [&](const std::string& stage, double done) { progress.update(stage, done); });
     }
-    catch (const Error&)
+    catch (const std::exception&)
     {
-      // What is probably a mistake may be the cause.
+      // What is probably a mistake may be the cause, of lack of memory too.
       progress.clear();
       print_warnings();
       throw;

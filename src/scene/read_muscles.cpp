@@ -252,6 +252,11 @@ void read_weakness(const Node& node, Scene& scene, const SceneNames& names)
     weakness.keeps = mapping.optional("keeps").number(Dimension::number, proportion, 0);
     if (const Node muscles = mapping.optional("muscles"); muscles.given())
       weakness.muscles = muscles.references(names.muscles);
+    if (!weakness.muscles.empty() && !mapping.optional("sphere").given() && !mapping.optional("dose").given())
+    {
+      scene.weakness.push_back(weakness);
+      continue;
+    }
     const std::string where = one_of(entry, mapping, { "sphere", "dose" });
     if (where.empty())
       continue;

@@ -210,6 +210,37 @@ TEST(Voxelise, WarnsOfMusclesMostlyClippedAndOfSurfacesFarFromTheTissue)
   EXPECT_NE(report.warnings[1].find("muscle 'a': cross_section is 60 m2"), std::string::npos);
 }
 
+TEST(Voxelise, WarnsOfSidesThatDifferOrLieBeforeEachOtherAndOfTissueLargerThanAHead)
+{
+  Scene scene = plain_scene(1e-3);
+  scene.surfaces = { box_surface("block", { 0, 0, 0 }, { 20e-3, 12e-3, 12e-3 }),
+                     box_surface("a_left", { 0, 8e-3, 0 }, { 6e-3, 8e-3, 6e-3 }),
+                     box_surface("a_right", { 0, -4e-3, 0 }, { 6e-3, 4e-3, 6e-3 }) };
+  scene.volumes = { volume_inside("tissue", { "block" }, "fat", true),
+                    volume_inside("a_left", { "a_left" }, "muscle", false, 1),
+                    volume_inside("a_right", { "a_right" }, "muscle", false, 1) };
+  scene.muscles = { { "a_left", "a_left", { 1, 0, 0 }, 0.3e6, false, true, 1 },
+                    { "a_right", "a_right", { 1, 0, 0 }, 0.3e6, false, true, 2 } };
+  scene.frame.forward = { 1, 0, 0 };
+  scene.frame.up = { 0, 0, 1 };
+  BakeReport report;
+  bake(scene, &report);
+  ASSERT_EQ(report.warnings.size(), 3u);  // the others: a_left is clipped, no node is held
+  EXPECT_EQ(report.warnings[1].find("muscle 'a_left' lies in the tissue with 25 % of its volume, 'a_right' with 100 %"),
+            0u)
+      << report.warnings[1];
+  scene.frame.forward = { 0, 1, 0 };
+  bake(scene, &report);
+  ASSERT_EQ(report.warnings.size(), 4u);
+  EXPECT_NE(report.warnings[0].find("'a_left' lies 12 mm from 'a_right', but not to its left"), std::string::npos)
+      << report.warnings[0];
+  scene = plain_scene(0.1);
+  scene.surfaces = { box_surface("block", { 0, 0, 0 }, { 0.9, 0.4, 0.4 }) };
+  scene.volumes = { volume_inside("tissue", { "block" }, "fat", true) };
+  bake(scene, &report);
+  EXPECT_NE(report.warnings[0].find("more than a head"), std::string::npos) << report.warnings[0];
+}
+
 TEST(Voxelise, SameBytesFromRunToRun)
 {
   Scene scene = plain_scene(1e-3);

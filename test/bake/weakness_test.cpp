@@ -32,7 +32,10 @@ TEST(Weakness, of_a_whole_muscle_leaves_its_passive_part)
   ASSERT_EQ(healthy.muscles.size(), 1u);
   const double whole = muscle_volume(healthy, 0);
   scene.weakness = { { { "pull" }, 0.25 } };
-  const Model weak = bake(scene);
+  BakeReport report;
+  const Model weak = bake(scene, &report);
+  ASSERT_EQ(report.forces.size(), 1u);
+  EXPECT_NEAR(report.forces[0].left, 0.25, 1e-6);
   ASSERT_EQ(weak.muscles.size(), 2u);
   EXPECT_EQ(weak.muscles[1].name, "pull_passive");
   EXPECT_TRUE(weak.muscles[1].passive);
@@ -77,6 +80,15 @@ TEST(Weakness, without_any_strength_left_there_are_no_fibres)
   const Model model = bake(scene);
   EXPECT_LT(model.fibre_muscle.size(), model.voxels.size());
   EXPECT_GT(model.fibre_muscle.size(), model.voxels.size() / 2);
+}
+
+TEST(Weakness, that_weakens_nothing_is_refused)
+{
+  Scene scene = block_of_muscle(false);
+  scene.weakness = { { {}, 0, { 0, 2e-3, 50e-3 }, 8e-3, false } };
+  EXPECT_THROW(bake(scene), Error);
+  scene.weakness = { { { "other" }, 0, { 0, 2e-3, 2e-3 }, 8e-3, false } };
+  EXPECT_THROW(bake(scene), Error);
 }
 
 }  // namespace

@@ -247,15 +247,15 @@ TEST(EveryKey, action_units_and_weakness)
   expect_vector(both.bones[0].shift, { 0, 0, 0.002 });
   expect_vector(both.bones[0].turn, { 0, 0.2617993877991494, 0 });
 
-  ASSERT_EQ(scene.weakness.size(), 3U);
+  ASSERT_EQ(scene.weakness.size(), 4U);
   EXPECT_EQ(scene.weakness[0].muscles, std::vector<std::string>{ "other" });
   EXPECT_EQ(scene.weakness[0].keeps, 0.5);
   EXPECT_EQ(scene.weakness[0].radius, 0);
   EXPECT_EQ(scene.weakness[1].muscles.size(), 2U);
   EXPECT_EQ(scene.weakness[1].keeps, 0.25);
   EXPECT_NEAR(scene.weakness[1].radius, 0.004, 1e-15);
-  EXPECT_FALSE(scene.weakness[1].dose);
-  EXPECT_TRUE(scene.weakness[2].dose);
+  EXPECT_TRUE(!scene.weakness[1].dose && scene.weakness[2].dose);
+  EXPECT_TRUE(scene.weakness[3].muscles.size() == 1 && scene.weakness[3].radius == 0);
   EXPECT_TRUE(scene.weakness[2].muscles.empty());
   expect_vector(scene.weakness[2].centre, { 0, 0, 0.001 });
 }

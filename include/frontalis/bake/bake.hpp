@@ -39,7 +39,8 @@ struct BakeReport
     double length = 0;         ///< mean length of the fibres [m]
     double cross_section = 0;  ///< cross-section in the model [m2]
     double given = 0;          ///< cross-section in people, from the scene [m2]; 0: not given
-    double force = 0;          ///< force at full activation and optimal length [N]
+    double force = 0;          ///< force at full activation and optimal length, without weaknesses of the scene [N]
+    double left = 1;           ///< fraction of it that these leave, 0..1
   };
   std::vector<Stage> stages;
   std::vector<MuscleForce> forces;

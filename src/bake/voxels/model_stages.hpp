@@ -80,9 +80,10 @@ void copy_settings(const Scene& scene, const LocalFrame& frame, Model& model);
 /// Copies the poses of bones in expressions, action units and the demo. The model must have its bones.
 void copy_poses(const Scene& scene, Model& model);
 
-/// Lowers the weights of muscles where the scene weakens them. This is the last stage, because reports describe the
-/// muscles at full strength.
-void weaken_muscles(const Scene& scene, const LocalFrame& frame, Model& model);
+/// Lowers the weights of muscles where the scene weakens them, and adds to the report what is left of each. This is the
+/// last stage, because other parts of the report describe muscles at full strength. Throws Error if a weakness at a
+/// place weakens nothing.
+void weaken_muscles(const Scene& scene, const LocalFrame& frame, Model& model, BakeReport* report);
 
 /// Finds rigid, sliding and prescribed nodes and fills bones, constraint surfaces and loads of kind displacement.
 /// A surface restricts the nodes at most `within` in front of it and at most two voxels behind it. Its front is the

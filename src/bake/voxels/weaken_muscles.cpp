@@ -1,3 +1,4 @@
+#include "bake/messages.hpp"
 #include "bake/voxels/model_stages.hpp"
 
 #include <algorithm>
@@ -26,7 +27,7 @@ double share_kept(const SceneWeakness& weakness, const Vector3& place)
 // Lowers the weight of the muscle in weak voxels, so that backends need no code for weakness, and models without it
 // take no extra time. If the muscle has passive stress, the difference is given to another muscle, NAME_passive, which
 // is never active.
-void weaken_muscles(const Scene& scene, const LocalFrame& frame, Model& model)
+void weaken_muscles(const Scene& scene, const LocalFrame& frame, Model& model, BakeReport* report)
 {
   if (scene.weakness.empty())
     return;
@@ -41,6 +42,8 @@ void weaken_muscles(const Scene& scene, const LocalFrame& frame, Model& model)
     model.fibre_direction.push_back(along);
   };
   std::map<std::int32_t, std::int32_t> passive_part;
+  std::vector<double> whole(model.muscles.size(), 0), left(model.muscles.size(), 0);
+  std::vector<bool> weakens(scene.weakness.size(), false);
   for (std::size_t e = 0; e < model.voxels.size(); ++e)
   {
     const Vector3 place = to_array(frame.voxel_centre(model, e));
@@ -48,10 +51,18 @@ void weaken_muscles(const Scene& scene, const LocalFrame& frame, Model& model)
     {
       const Muscle of = model.muscles[muscle[f]];
       double kept = 1;
-      for (const SceneWeakness& weakness : scene.weakness)
-        if (weakness.muscles.empty() ||
-            std::find(weakness.muscles.begin(), weakness.muscles.end(), of.name) != weakness.muscles.end())
-          kept *= share_kept(weakness, place);
+      for (std::size_t w = 0; w < scene.weakness.size(); ++w)
+      {
+        const SceneWeakness& weakness = scene.weakness[w];
+        if (!weakness.muscles.empty() &&
+            std::find(weakness.muscles.begin(), weakness.muscles.end(), of.name) == weakness.muscles.end())
+          continue;
+        const double share = share_kept(weakness, place);
+        kept *= share;
+        weakens[w] = weakens[w] || share < 0.999;
+      }
+      whole[muscle[f]] += double(weight[f]);
+      left[muscle[f]] += kept * double(weight[f]);
       if (kept > 0)
         add(muscle[f], kept * weight[f], direction[f]);
       if (!of.passive || kept == 1)
@@ -63,6 +74,19 @@ void weaken_muscles(const Scene& scene, const LocalFrame& frame, Model& model)
     }
     model.fibre_begin.push_back(static_cast<std::int32_t>(model.fibre_muscle.size()));
   }
+  for (std::size_t w = 0; w < weakens.size(); ++w)
+  {
+    const SceneWeakness& weakness = scene.weakness[w];
+    if (weakness.radius > 0 && weakness.keeps < 1 && !weakens[w])
+      throw failure("{}: weakness: no voxel of {} lies within {} of {}; check its place and radius", scene.file,
+                    weakness.muscles.empty() ? "a muscle" : fmt::format("{}", fmt::join(weakness.muscles, ", ")),
+                    length_text(weakness.radius, scene.unit), place_text(to_vector(weakness.centre), scene.unit));
+  }
+  if (report != nullptr)
+    for (BakeReport::MuscleForce& force : report->forces)
+      for (std::size_t m = 0; m < whole.size(); ++m)
+        if (model.muscles[m].name == force.name && whole[m] > 0)
+          force.left = left[m] / whole[m];
 }
 
 }  // namespace frontalis
