@@ -50,9 +50,12 @@ void find_surfaces_apart(const Scene& scene, const Volumes& volumes, BakeMonitor
 void check_size(const Scene& scene, const Volumes& volumes, BakeMonitor& monitor)
 {
   const Box tissue = volumes.tissue_box();
-  if (const double extent = tissue.sizes().maxCoeff(); extent > largest_tissue)
-    monitor.warn("{}: the tissue spans {}, more than a head; check 'unit': {}", scene.file,
-                 box_text(tissue, scene.unit), unit_advice(extent, scene.unit));
+  const double extent = tissue.sizes().maxCoeff();
+  if (!(extent > largest_tissue))
+    return;
+  const std::string advice = unit_advice(extent, scene.unit);
+  monitor.warn("{}: the tissue spans {}, more than a head; check 'unit'{}", scene.file, box_text(tissue, scene.unit),
+               advice.empty() ? "" : ": " + advice);
 }
 
 /// Throws Error if a volume lies outside the tissue, and reports how much of each muscle was clipped.
@@ -106,9 +109,7 @@ void check_volumes(const Scene& scene, const Volumes& volumes, const Voxels& vox
   }
   for (const auto& [name, share] : in_tissue)
   {
-    const auto other = name.size() > 5 && name.substr(name.size() - 5) == "_left"
-                           ? in_tissue.find(name.substr(0, name.size() - 5) + "_right")
-                           : in_tissue.end();
+    const auto other = counterpart(in_tissue, name);
     if (other != in_tissue.end() && std::max(share, other->second) > sides_differ * std::min(share, other->second))
       monitor.warn(
           "muscle '{}' lies in the tissue with {:.0f} % of its volume, '{}' with {:.0f} %: the face will move "

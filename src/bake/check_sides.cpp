@@ -3,7 +3,6 @@
 #include "bake/messages.hpp"
 
 #include <cmath>
-#include <map>
 
 namespace frontalis
 {
@@ -21,14 +20,12 @@ void check_pairs(const Scene& scene, const std::map<std::string, Thing>& things,
 {
   constexpr double least_distance = 1e-3;  // [m]
   constexpr double clear = 0.5;            // cosine; axes of a scene without 'frame' may lie in any direction
-  const std::string left_end = "_left";
   const Vector3d left = to_vector(scene.frame.up).cross(to_vector(scene.frame.forward)).normalized();
   std::size_t pairs = 0, exchanged = 0, across = 0;
   std::string first, first_across;
   for (const auto& [name, thing] : things)
   {
-    const std::size_t end = name.size() - std::min(name.size(), left_end.size());
-    const auto other = name.substr(end) == left_end ? things.find(name.substr(0, end) + "_right") : things.end();
+    const auto other = counterpart(things, name);
     if (other == things.end())
       continue;
     ++pairs;

@@ -2,8 +2,21 @@
 
 #include "bake/mesh/surface.hpp"
 
+#include <algorithm>
+#include <map>
+#include <string>
+
 namespace frontalis
 {
+
+/// The thing called NAME_right if `name` is NAME_left, and things.end() for any other name or without such a thing.
+template <class Thing>
+auto counterpart(const std::map<std::string, Thing>& things, const std::string& name)
+{
+  const std::string left = "_left";
+  const std::size_t end = name.size() - std::min(name.size(), left.size());
+  return name.substr(end) == left ? things.find(name.substr(0, end) + "_right") : things.end();
+}
 
 /// Throws Error if a surface or landmark called NAME_left lies to the right of NAME_right in the face frame. A face
 /// that is mirrored, by its files or by its frame, would otherwise be baked without a word. Warns if left and right do
