@@ -11,18 +11,18 @@ namespace
 
 using namespace frontalis;
 
-TEST(SliverHourglass, IsThatOfTheSoftestMaterialInTheVoxels)
+TEST(SliverHourglass, IsThreeTimesThatOfTheSoftestMaterialInTheVoxels)
 {
   Model model = test::block_model(test::BlockSettings());
-  const double own = softest_hourglass(model);
+  const double own = least_hourglass(model);
   EXPECT_GT(own, 0);
   // a material of a film on the skin, of which no voxel has any
   model.materials.push_back(model.materials[0]);
   model.materials[1].parameters[0] *= 0.5f;
   model.materials[1].parameters[1] *= 0.5f;
-  EXPECT_EQ(softest_hourglass(model), own);
+  EXPECT_EQ(least_hourglass(model), own);
   model.mixture_material.back() = 1;
-  EXPECT_NEAR(softest_hourglass(model), 0.5 * own, 1e-6 * own);
+  EXPECT_NEAR(least_hourglass(model), 0.5 * own, 1e-6 * own);
 }
 
 TEST(SliverHourglass, FadesWithTheTissue)

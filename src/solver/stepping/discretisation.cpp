@@ -168,7 +168,7 @@ Discretisation::Discretisation(const Model& model)
   added = added_stiffness(model, *this);
   // Gauss points, assumed strain and tissue centres give hourglass modes stiffness of their own.
   if (!assumed_strain && !selective_reduced && model.tissue_centre.empty())
-    full_hourglass_ = softest_hourglass(model);
+    least_hourglass_ = least_hourglass(model);
   VoxelProperties v;
   const EffectSet running = std::exchange(running_, EffectSet());  // the stiffness here is that without fibres
   for (std::size_t e = 0; e < model.tissue_centre.size(); ++e)
@@ -322,8 +322,8 @@ void Discretisation::mix(std::size_t e, VoxelProperties& out) const
   out.hourglass = physics::hourglass_stiffness(physics::young_modulus(shear, out.kappa), out.tissue_volume,
                                                std::max({ h[0], h[1], h[2] }));
   if (const double modes = physics::voxel_stiffness(shear, out.kappa, 0.0, out.tissue_volume, h[0], h[1], h[2]);
-      full_hourglass_ > 0)
-    out.hourglass = std::max(out.hourglass, sliver_hourglass(double(model.fill[e]), full_hourglass_, modes));
+      least_hourglass_ > 0)
+    out.hourglass = std::max(out.hourglass, sliver_hourglass(double(model.fill[e]), least_hourglass_, modes));
   if (assumed_strain)
   {
     out.stabilisation = physics::assumed_strain(shear, out.kappa, out.tissue_volume);

@@ -11,7 +11,7 @@
 namespace frontalis
 {
 
-double softest_hourglass(const Model& model)
+double least_hourglass(const Model& model)
 {
   const auto& h = model.spacing;
   // A model may have further materials, such as those of a film on the skin.
@@ -20,7 +20,7 @@ double softest_hourglass(const Model& model)
   for (const int m : present)
     young = std::min(
         young, physics::young_modulus(shear_at_rest(model.materials[m]), double(model.materials[m].parameters[1])));
-  return physics::hourglass_stiffness(young, h[0] * h[1] * h[2], std::max({ h[0], h[1], h[2] }));
+  return 3 * physics::hourglass_stiffness(young, h[0] * h[1] * h[2], std::max({ h[0], h[1], h[2] }));
 }
 
 }  // namespace frontalis

@@ -15,11 +15,11 @@ namespace
 
 // These values are empirical: with them the hard cases of doc/stability.md pass.
 constexpr double cautious_share = 0.55;  // cautious steps: fraction of the critical step
-constexpr int cautious_plan = 8;         // number of steps in a cautious plan
+constexpr int cautious_plan = 8;         // number of steps in a cautious plan, largest while tissue is fast
 constexpr int vibration_plan = 32;       // largest number of steps in a plan while tissue vibrates
 // Longest path of a node in a step, in shortest voxel edges. Tissue that moves faster crushes voxels within a few
 // steps.
-constexpr double way_per_step = 0.15;
+constexpr double way_per_step = 0.12;
 constexpr double least_share = 0.1;  // of the step for that; what needs less is flung away, which the guard reports
 // The following constants define signs of fast change, and the number of cautious steps after each.
 constexpr double growth_between_plans = 1.1;  // ratio of covered squared frequencies of successive plans
@@ -114,6 +114,8 @@ TimeStepController::Choice TimeStepController::choose(double remaining, double l
     most_steps = std::max(1, static_cast<int>(std::min<double>(longest_plan / dt, cautious_plan)));
   else if (vibrates)
     most_steps = std::min(vibration_plan, most_steps);
+  if (fast)
+    most_steps = std::min(cautious_plan, most_steps);
   if (in_motion)
     most_steps = static_cast<int>(std::min<std::int64_t>(most_steps, state_.assembled.steps_left()));
   // Without the tolerance, a rounding error could add a step.
