@@ -230,7 +230,9 @@ namespace
 
 std::string missing_device()
 {
-  int count = 0;
+  int count = 0, driver = 0;
+  if (cudaDriverGetVersion(&driver) == cudaSuccess && driver == 0)
+    return "no NVIDIA driver is installed";
   const cudaError_t found = cudaGetDeviceCount(&count);
   const cudaError_t usable = found == cudaSuccess && count > 0 ? cuda::has_device_code() : found;
   cudaGetLastError();

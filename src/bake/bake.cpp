@@ -11,6 +11,7 @@
 #include "bake/voxels/shells.hpp"
 #include "frontalis/model/effects.hpp"
 
+#include <algorithm>
 #include <map>
 #include <set>
 
@@ -23,6 +24,7 @@ constexpr double least_in_tissue = 0.4;   // share of a muscle's volume below wh
 constexpr double least_of_muscle = 0.05;  // and below which the bake ends
 constexpr double sides_differ = 1.3;      // ratio of these shares of a muscle and its counterpart above which it warns
 constexpr double largest_tissue = 0.6;    // [m]
+constexpr std::size_t few_voxels = 100;   // with fewer, the unit or the voxel is probably wrong
 
 /// Warns of surfaces that the scene cuts out of the tissue, such as bones, but that lie nowhere near it or are smaller
 /// than a voxel: their length unit or their place is wrong, and tissue fills the place where they should be.
@@ -44,6 +46,46 @@ void find_surfaces_apart(const Scene& scene, const Volumes& volumes, BakeMonitor
         monitor.warn("surface '{}' is smaller than a voxel: it spans {}; check its length unit", body.name(),
                      box_text(body.box(), scene.unit));
     }
+}
+
+/// Warns of bones that tissue fills: large closed surfaces from files that lie in the tissue and that no volume names.
+/// Small ones, such as cartilages, may be meant to hold the tissue in them.
+void find_filled_surfaces(const Scene& scene, const PreparedSurfaces& surfaces, const Volumes& volumes,
+                          BakeMonitor& monitor)
+{
+  constexpr int points = 1000;
+  constexpr double large = 1e-5;           // [m3]
+  constexpr double filled_a_little = 0.1;  // share of the points
+  std::set<std::string> named;
+  for (const Volume& volume : scene.volumes)
+    for (const auto* list : { &volume.closed_by, &volume.inside, &volume.outside, &volume.without, &volume.slits })
+      named.insert(list->begin(), list->end());
+  const auto is_tissue = [&](const Vector3d& p)
+  {
+    return std::any_of(volumes.entries().begin(), volumes.entries().end(),
+                       [&](const Volumes::Entry& entry)
+                       { return entry.volume->tissue && membership(volumes, entry, p) == Membership::inside; });
+  };
+  for (const Surface& given : scene.surfaces)
+  {
+    if (given.file.empty() || named.count(given.name) > 0)
+      continue;
+    const PreparedSurface& surface = named_surface(surfaces, given.name, scene.file);
+    if (!surface.closed() || signed_volume(surface.mesh()) < large)
+      continue;
+    int inside = 0, filled = 0;
+    for (int i = 0; i < points; ++i)
+      if (const Vector3d p = spread_point(surface.box(), i); surface.tree().winding_number(p) > 0.5)
+      {
+        ++inside;
+        filled += is_tissue(p) ? 1 : 0;
+      }
+    if (filled > filled_a_little * inside)
+      monitor.warn(
+          "{} lies in the tissue, but no volume names it, so that tissue fills {:.0f} % of it; if it is a "
+          "bone, add it to 'outside' of the volumes of tissue",
+          place_in_scene(scene, "surface", given), 100.0 * filled / inside);
+  }
 }
 
 /// Warns of tissue that is larger than a head: its length unit is probably wrong.
@@ -165,13 +207,18 @@ Model bake(const Scene& given, BakeReport* report, const BakeProgress& progress)
   const Scene scene = following_head(given);
   const bool measure = report != nullptr && report->measure_muscles;
   if (report != nullptr)
-    *report = { {}, {}, {}, measure, {}, {} };
+    *report = { {}, {}, {}, {}, measure, {}, {} };
   BakeMonitor monitor(report, progress);
   if (scene.accuracy.samples < 1 || scene.accuracy.samples > 32)
     throw failure("{}: accuracy: samples is {}; it must be 1 to 32", scene.file, scene.accuracy.samples);
 
   monitor.begin("surfaces");
   const auto surfaces = prepare_surfaces(scene, monitor);
+  for (const auto& surface : surfaces)
+    if (report != nullptr)
+      report->surfaces.push_back({ surface->name(), to_array(surface->box().min()), to_array(surface->box().max()),
+                                   surface->mesh().triangles.size(),
+                                   surface->closed() ? signed_volume(surface->mesh()) : 0 });
   check_sides(scene, surfaces, monitor);
   const double sample_spacing = to_vector(scene.accuracy.voxel).minCoeff() / scene.accuracy.samples;
   const Volumes volumes(scene, surfaces, sample_spacing);
@@ -179,6 +226,7 @@ Model bake(const Scene& given, BakeReport* report, const BakeProgress& progress)
   check_size(scene, volumes, monitor);
   const Grid grid = make_grid(scene, volumes);
   find_surfaces_apart(scene, volumes, monitor);
+  find_filled_surfaces(scene, surfaces, volumes, monitor);
 
   monitor.begin("voxels");
   Model model;
@@ -193,6 +241,9 @@ Model bake(const Scene& given, BakeReport* report, const BakeProgress& progress)
       throw Error(scene.file +
                   ": no voxel has more tissue than fill_min; the tissue is thinner than the voxels: use smaller "
                   "voxels or a smaller fill_min");
+    if (voxels.place.size() < few_voxels)
+      monitor.warn("{}: the tissue has {} only; check 'unit' and 'voxel'", scene.file,
+                   count_text(voxels.place.size(), "voxel", "voxels"));
     gaps.part(voxels, monitor);
     if (scene.accuracy.boundary != "true" || scene.accuracy.integration != "one_point")
       voxels.centre.clear();

@@ -49,7 +49,8 @@ void check_pairs(const Scene& scene, const std::map<std::string, Thing>& things,
                   exchanged == pairs
                       ? "the data are mirrored or turned, or 'forward' and 'up' of the scene's 'frame' are "
                         "not those of the data"
-                      : "exchange their names or files");
+                      : "exchange their names or files; if all bones or all muscles are exchanged, their data are "
+                        "mirrored or turned, as between the axes LPS and RAS of medical images");
   if (pairs > 0 && across == pairs)
     monitor.warn(
         "{}, but not to its left in the face frame: 'forward' and 'up' of the scene's 'frame' are not those of "

@@ -73,7 +73,7 @@ void bake_to_file(const BakeOptions& options)
     for (const std::string& finding : summary.findings)
       fmt::print("finding  {}\n", finding);
     print_constraints(model);
-    fmt::print("{}", summary.muscles);
+    fmt::print("{}", summary.tables);
   }
   fmt::print("voxels   {} of {:g} x {:g} x {:g} mm\n", model.voxels.size(), model.spacing[0] * 1e3,
              model.spacing[1] * 1e3, model.spacing[2] * 1e3);
@@ -94,8 +94,9 @@ void add_bake_command(CLI::App& app)
   const auto options = std::make_shared<BakeOptions>();
   command->add_option("SCENE", options->source.path, "scene file (YAML)")->required();
   command->add_option("-o,--output", options->output, "model file to write (.vtkhdf)")->required();
-  command->add_flag("--report", options->report,
-                    "print all findings, and the muscles' volumes beside those of their meshes");
+  command->add_flag(
+      "--report", options->report,
+      "print all findings, extents of the surfaces, and the muscles' volumes beside those of their meshes");
   command->add_option("--surfaces", options->source.surfaces,
                       "folder to write the scene's surfaces to, as made or repaired (OBJ, metres)");
   command->add_option(

@@ -82,26 +82,41 @@ void keep_in_cache(const Model& model, const std::string& path, std::string& tol
   }
 }
 
+std::string table_of(const std::vector<BakeReport::SurfaceExtent>& surfaces)
+{
+  std::string table = fmt::format("surface  {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>9} {:>8}\n", "x from", "to mm",
+                                  "y from", "to mm", "z from", "to mm", "triangles", "cm3");
+  for (const BakeReport::SurfaceExtent& surface : surfaces)
+  {
+    table += "surface ";
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      table += fmt::format(" {:8.1f} {:8.1f}", 1e3 * surface.lower[axis], 1e3 * surface.upper[axis]);
+    table += fmt::format(" {:9} {:>8}  {}\n", surface.triangles,
+                         surface.volume > 0 ? fmt::format("{:.4g}", 1e6 * surface.volume) : "open", surface.name);
+  }
+  return table;
+}
+
 BakeSummary summary_of(const BakeReport& report)
 {
-  BakeSummary summary{ report.measure_muscles, {}, {}, report.findings, report.warnings };
+  BakeSummary summary{ report.measure_muscles, {}, table_of(report.surfaces), report.findings, report.warnings };
   for (const BakeReport::Stage& stage : report.stages)
     summary.stages +=
         fmt::format("stage    {:8.3f} s  {:6.0f} MB  {}\n", stage.seconds, stage.peak_memory / 1e6, stage.name);
   if (!report.muscles.empty())
-    summary.muscles = fmt::format("muscle   {:>8} {:>9} {:>7} {:>8} {:>8} {:>8} {:>8} {:>8}  cm3\n", "voxels",
+    summary.tables += fmt::format("muscle   {:>8} {:>9} {:>7} {:>8} {:>8} {:>8} {:>8} {:>8}  cm3\n", "voxels",
                                   "in tissue", "differ", "mesh", "in bone", "off skin", "limits", "nurbs");
   for (const BakeReport::MuscleVolume& muscle : report.muscles)
-    summary.muscles +=
+    summary.tables +=
         fmt::format("muscle   {:8.3f} {:9.3f} {:6.1f}% {:8.3f} {:8.3f} {:8.3f} {:8.3f} {:>8}  {}\n",
                     1e6 * muscle.voxels, 1e6 * muscle.in_tissue, 100 * (muscle.voxels / muscle.in_tissue - 1),
                     1e6 * muscle.mesh, 1e6 * muscle.in_bone, 1e6 * muscle.beyond_skin, 1e6 * muscle.elsewhere,
                     muscle.nurbs > 0 ? fmt::format("{:.3f}", 1e6 * muscle.nurbs) : "-", muscle.name);
   if (!report.forces.empty())
-    summary.muscles += fmt::format("strength {:>8} {:>9} {:>9} {:>7} {:>8} {:>7}\n", "fibre mm", "model mm2", "people",
-                                   "factor", "force N", "left %");
+    summary.tables += fmt::format("strength {:>8} {:>9} {:>9} {:>7} {:>8} {:>7}\n", "fibre mm", "model mm2", "people",
+                                  "factor", "force N", "left %");
   for (const BakeReport::MuscleForce& force : report.forces)
-    summary.muscles += fmt::format(
+    summary.tables += fmt::format(
         "strength {:8.1f} {:9.1f} {:>9} {:7.2f} {:8.2f} {:7.0f}  {}\n", 1e3 * force.length, 1e6 * force.cross_section,
         force.given > 0 ? fmt::format("{:.1f}", 1e6 * force.given) : "-",
         force.given > 0 ? force.given / force.cross_section : 1.0, force.force, 100 * force.left, force.name);
@@ -164,6 +179,8 @@ Model bake_scene(const ModelSource& source, BakeSummary* summary)
       // What is probably a mistake may be the cause, of lack of memory too.
       progress.clear();
       print_warnings();
+      if (report.measure_muscles)
+        fmt::print(source.progress, "{}", table_of(report.surfaces));
       throw;
     }
     keep_in_cache(*model, cached, of_cache);

@@ -31,9 +31,9 @@ struct ModelSource
 /// The report of a bake, ready to print.
 struct BakeSummary
 {
-  bool whole = false;   ///< set before the bake in order to measure the muscles too
-  std::string stages;   ///< use of the cache, if there is one; seconds, peak memory and name of each stage
-  std::string muscles;  ///< a table of the muscles' volumes
+  bool whole = false;  ///< set before the bake in order to measure the muscles too
+  std::string stages;  ///< use of the cache, if there is one; seconds, peak memory and name of each stage
+  std::string tables;  ///< of the surfaces' extents, and of the muscles' volumes and strengths
   std::vector<std::string> findings;
   std::vector<std::string> warnings;  ///< bake_scene() prints them if there is no summary
 };

@@ -9,6 +9,19 @@ namespace frontalis
 namespace
 {
 
+// What may be meant by the path of a file that is not there.
+std::string alternative(const std::filesystem::path& path)
+{
+  if (path.string().find('\\') != std::string::npos)
+    return " (write / between folders)";
+  std::vector<std::string> names;
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(path.parent_path(), ignored))
+    names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  return suggestion(path.filename().string(), names);
+}
+
 // Folder of the mesh files. Its existence is checked when the first file is read, because shapes need no folder.
 class MeshFolder
 {
@@ -65,7 +78,7 @@ public:
                      remedy);
     else
       for (const auto& [file, path] : missing_)
-        file.fault("no file '{}'{}", path, remedy);
+        file.fault("no file '{}'{}{}", path, alternative(path), remedy);
   }
 
 private:

@@ -1,3 +1,5 @@
+#include "bake/mesh/surface.hpp"
+
 #include "frontalis/error.hpp"
 
 #include "bake/scene_pieces.hpp"
@@ -173,6 +175,32 @@ TEST(Voxelise, MuscleWeightIsItsShareOfTheTissue)
   for (const std::string& finding : report.findings)
     clipped = clipped || finding.find("'a'") != std::string::npos;
   EXPECT_TRUE(clipped);
+}
+
+TEST(Voxelise, WarnsOfBonesThatTissueFills)
+{
+  Scene scene = plain_scene(3e-3);
+  const std::string bone = testing::TempDir() + "filled_bone.obj", cartilage = testing::TempDir() + "filled_small.obj";
+  const auto all = [](const auto&) { return true; };
+  write_obj(make_shape(*box_surface("", { 0, 0, 0 }, { 30e-3, 30e-3, 30e-3 }).shape), bone, all);
+  write_obj(make_shape(*box_surface("", { 0, 0, 20e-3 }, { 9e-3, 9e-3, 9e-3 }).shape), cartilage, all);
+  scene.surfaces = { box_surface("block", { 0, 0, 0 }, { 60e-3, 60e-3, 60e-3 }), file_surface("bone", bone),
+                     file_surface("cartilage", cartilage), sphere_surface("ball", { 0, 0, 0 }, 20e-3, 3e-3) };
+  scene.volumes = { volume_inside("tissue", { "block" }, "fat", true) };
+  BakeReport report;
+  bake(scene, &report);
+  ASSERT_EQ(report.warnings.size(), 2u);  // no node is held
+  EXPECT_NE(report.warnings[0].find("surface 'bone' lies in the tissue, but no volume names it, so that tissue fills "
+                                    "100 % of it"),
+            std::string::npos)
+      << report.warnings[0];
+  scene.volumes[0].outside = { "bone" };
+  bake(scene, &report);
+  EXPECT_EQ(report.warnings.size(), 1u);
+  scene.accuracy.voxel = { { 30e-3, 30e-3, 30e-3 } };
+  scene.volumes[0].outside.clear();
+  bake(scene, &report);
+  EXPECT_NE(report.warnings[1].find("the tissue has 8 voxels only"), std::string::npos) << report.warnings[1];
 }
 
 TEST(Voxelise, WarnsOfMusclesMostlyClippedAndOfSurfacesFarFromTheTissue)

@@ -115,5 +115,22 @@ TEST(Options, wrong_ones_are_told_with_what_exists)
   }
 }
 
+TEST(Options, files_of_similar_names_are_suggested)
+{
+  std::ifstream scene(folder + "/bad/missing_file.yaml");
+  const std::string text{ std::istreambuf_iterator<char>(scene), {} }, path = testing::TempDir() + "similar_file.yaml";
+  SceneOptions options;
+  options.mesh_directory = folder;
+  for (const auto& [file, expected] :
+       { std::pair{ "meshes/Triangle.OBJ", "Triangle.OBJ' (did you mean 'triangle.obj'?); must be" },
+         std::pair{ "meshes\\triangle.obj", "triangle.obj' (write / between folders); must be" } })
+  {
+    std::string changed = text;
+    changed.replace(changed.find("absent.obj"), 10, file);
+    std::ofstream(path) << changed;
+    EXPECT_NE(message_of(path, options).find(expected), std::string::npos) << message_of(path, options);
+  }
+}
+
 }  // namespace
 }  // namespace frontalis

@@ -42,6 +42,15 @@ struct BakeReport
     double force = 0;          ///< force at full activation and optimal length, without weaknesses of the scene [N]
     double left = 1;           ///< fraction of it that these leave, 0..1
   };
+  /// A surface of the scene, after repairs, in scene coordinates.
+  struct SurfaceExtent
+  {
+    std::string name;
+    Vector3 lower{}, upper{};  ///< corners of the box around it [m]
+    std::size_t triangles = 0;
+    double volume = 0;  ///< that it encloses [m3]; 0: it is open
+  };
+  std::vector<SurfaceExtent> surfaces;
   std::vector<Stage> stages;
   std::vector<MuscleForce> forces;
   std::vector<MuscleVolume> muscles;  ///< muscles bounded by surfaces; filled if `measure_muscles` is set

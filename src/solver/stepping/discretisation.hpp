@@ -122,7 +122,7 @@ private:
 
   const Model* model_;
   EffectSet running_;
-  double least_hourglass_ = 0;  // of slivers [N/m]; 0: no such least stiffness
+  double least_hourglass_ = 0;      // of slivers [N/m]; 0: no such least stiffness
   std::vector<float> mass_factor_;  // one per voxel; empty without mass scaling
 };
 
