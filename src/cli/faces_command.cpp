@@ -1,12 +1,12 @@
 #include "cli/command_options.hpp"
 #include "cli/model_source.hpp"
+#include "cli/movie.hpp"
 #include "cli/progress.hpp"
 
 #include "frontalis/error.hpp"
 #include "frontalis/solver/fine_lines.hpp"
 #include "frontalis/solver/guard.hpp"
 #include "frontalis/study/faces.hpp"
-#include "frontalis/study/portrait.hpp"
 
 #include <fmt/format.h>
 
@@ -28,6 +28,7 @@ struct FacesOptions
   bool measured_only = false;
   std::string json, table, pictures;
   int columns = 6;
+  PortraitView view;
   FaceSettings settings;
 };
 
@@ -79,7 +80,7 @@ void measure_faces(FacesOptions& options)
     options.settings.settled = [&](const std::string& name, const SkinState& skin, const Controls& controls)
     {
       if (!portrait)
-        portrait.emplace(*model, skin);
+        portrait.emplace(*model, skin, options.view);
       if (name.empty() && !pictures.empty())
         return;
       SkinState lined = skin;
@@ -121,7 +122,7 @@ void measure_faces(FacesOptions& options)
   if (!options.table.empty())
     write_text(options.table, faces_table(rows, options.all_landmarks).markdown());
   if (!options.pictures.empty() && !pictures.empty())
-    write_contact_sheet(pictures, options.columns, options.pictures + "/faces");
+    write_contact_sheet(pictures, options.view, options.columns, options.pictures + "/faces");
   if (interrupted)
     throw Interrupted();
   const auto compared =
@@ -156,6 +157,7 @@ void add_faces_command(CLI::App& app)
   command->add_option("--pictures", options->pictures,
                       "write a contact sheet to faces.png in this folder (needs gnuplot)");
   add_positive(*command, "--columns", options->columns, "of the contact sheet (6)");
+  add_view_options(*command, options->view);
   add_solver_options(*command, options->settings.solver);
   add_scene_options(*command, options->source);
   command->callback([options] { measure_faces(*options); });

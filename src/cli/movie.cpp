@@ -9,7 +9,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <utility>
+#include <map>
 
 namespace frontalis
 {
@@ -27,8 +27,29 @@ std::string shell_word(const std::string& text)
 
 }  // namespace
 
-Movie::Movie(std::string path, double frame_rate, const Model& model)
-    : path_(std::move(path)), folder_(path_), frame_rate_(frame_rate), model_(model)
+void add_view_options(CLI::App& command, PortraitView& view)
+{
+  std::map<std::string, double> azimuths(PortraitView::azimuths().begin(), PortraitView::azimuths().end());
+  command
+      .add_option_function<std::string>(
+          "--view", [&view, azimuths](const std::string& name) { view.azimuth = azimuths.at(name); },
+          "from where pictures show the face (oblique, a little from the subject's left); in 'front' the subject's "
+          "left "
+          "is at the right")
+      ->check(CLI::IsMember(azimuths));
+  command.add_option("--picture-height", view.height, fmt::format("height of pictures in pixels ({})", view.height))
+      ->check(CLI::Range(64, 4096));
+}
+
+void add_movie_options(CLI::App& command, MovieOptions& options)
+{
+  command.add_option("--movie", options.path,
+                     "FILE.gif, drawn without a display and joined by ImageMagick, or a folder for frame_NNNN.png");
+  add_view_options(command, options.view);
+}
+
+Movie::Movie(const MovieOptions& options, double frame_rate, const Model& model)
+    : path_(options.path), folder_(path_), frame_rate_(frame_rate), model_(model), view_(options.view)
 {
   if (std::filesystem::path(path_).extension() == ".gif")
   {
@@ -52,9 +73,9 @@ Movie::Movie(std::string path, double frame_rate, const Model& model)
 void Movie::add(const SkinState& skin, const Controls& controls)
 {
   if (!portrait_)
-    portrait_.emplace(model_, skin);
+    portrait_.emplace(model_, skin, view_);
   write_text(fmt::format("{}/frame_{:04}.png", folder_, frames_++),
-             png_of(portrait_->draw(skin, controls).data(), Portrait::width, Portrait::height, 3));
+             png_of(portrait_->draw(skin, controls).data(), view_.width(), view_.height, 3));
 }
 
 void Movie::finish()

@@ -39,7 +39,8 @@ struct RunOptions
   bool demo = false;
   double seconds = 1;
   bool seconds_given = false;
-  std::string frames, plot, movie;
+  std::string frames, plot;
+  MovieOptions movie;
   bool wrinkles = false;
   std::vector<double> wrinkles_in;  ///< smallest left and up, largest left and up [mm]; empty: everywhere
   bool vtp = false;
@@ -181,7 +182,7 @@ void check_options(const RunOptions& options)
   if (options.demo && (!options.activation.empty() || !options.expression.empty() || !options.activation_file.empty() ||
                        !options.bones.empty() || options.to_equilibrium))
     throw WrongUsage("--demo goes with none of --activate, --expression, --activations, --bone, --to-equilibrium");
-  if ((!options.plot.empty() || !options.movie.empty()) && options.to_equilibrium)
+  if ((!options.plot.empty() || !options.movie.path.empty()) && options.to_equilibrium)
     throw WrongUsage("--plot and --movie: there is no time on the way to equilibrium");
   if (options.vtp && options.frames.empty())
     throw WrongUsage("--vtp goes with --frames, which names the folder");
@@ -277,7 +278,7 @@ void simulate(RunOptions& options)
   const std::unique_ptr<Solver> solver = make_solver(model, options.solver);
   switch_off(*solver, off);
   Run run{ options, *model, std::move(curve), *solver, std::move(folder) };
-  if (!options.movie.empty())
+  if (!options.movie.path.empty())
     run.movie.emplace(options.movie, options.frame_rate, *model);
   run.fine_lines = FineLines::make(model, false);
   RunSummary& summary = run.summary;
@@ -364,8 +365,7 @@ void add_run_command(CLI::App& app)
                     "write the frames also as skin_NNNN.vtp, with displacements, and skin.pvd for ParaView");
   command->add_option("--plot", options->plot,
                       "FILE.png, and FILE.svg beside it: force on bodies that tissue touches, over time");
-  command->add_option("--movie", options->movie,
-                      "FILE.gif, drawn without a display and joined by ImageMagick, or a folder for frame_NNNN.png");
+  add_movie_options(*command, options->movie);
   command->add_flag("--wrinkles", options->wrinkles,
                     "measure the furrows that the skin has at the end but not at rest");
   command

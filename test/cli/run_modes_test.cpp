@@ -130,16 +130,27 @@ TEST_F(RunModes, wrong_tables_are_told_with_their_line)
 
 TEST_F(RunModes, a_movie_has_a_picture_per_frame)
 {
-  const auto run_to = [&](const std::string& movie)
+  const auto run_to = [&](const std::string& movie, const std::vector<std::string>& options = {})
   {
-    return run_program({ "run", std::string(FRONTALIS_SOURCE_DIRECTORY) + "/test/ros/small.yaml", "--expression",
-                         "shorten", "--seconds", "0.1", "--frame-rate", "50", "--movie", folder / movie });
+    std::vector<std::string> words{ "run",          std::string(FRONTALIS_SOURCE_DIRECTORY) + "/test/ros/small.yaml",
+                                    "--expression", "shorten",
+                                    "--seconds",    "0.1",
+                                    "--frame-rate", "50",
+                                    "--movie",      folder / movie };
+    words.insert(words.end(), options.begin(), options.end());
+    return run_program(words);
   };
   const auto pictures = run_to("pictures");
   ASSERT_EQ(pictures.code, 0) << pictures.errors;
   EXPECT_EQ(text_of(folder / "pictures/frame_0000.png").substr(1, 3), "PNG");
   EXPECT_TRUE(text_of(folder / "pictures/frame_0000.png") != text_of(folder / "pictures/frame_0005.png"));
   EXPECT_FALSE(std::filesystem::exists(folder / "pictures/frame_0006.png"));
+  const std::string oblique = text_of(folder / "pictures/frame_0000.png");
+  ASSERT_EQ(run_to("pictures", { "--view", "left", "--picture-height", "190" }).code, 0);
+  const std::string left = text_of(folder / "pictures/frame_0000.png");
+  EXPECT_EQ(left.substr(16, 8), std::string("\0\0\0\x96\0\0\0\xbe", 8)) << "150 by 190 pixels, in the header";
+  ASSERT_EQ(run_to("pictures", { "--view", "front" }).code, 0);
+  EXPECT_TRUE(text_of(folder / "pictures/frame_0000.png") != oblique);
   const auto joined = run_to("it's.gif");
   if (joined.code != 0 && joined.errors.find("imagemagick") != std::string::npos)
     GTEST_SKIP() << joined.errors;
