@@ -41,6 +41,7 @@ public:
   void restore(const BackendState& from) override;
   void internal_forces(NodalVectors& out) override;
   double highest_frequency_squared() override;
+  void measure_growth(double found) override;
   std::vector<FoundMode> modes_above(double frequency_squared) override;
   void masses_changed(const std::vector<std::int32_t>& nodes) override;
   Monitor monitor() override;
@@ -59,6 +60,7 @@ private:
   void stage(const StepPlan& plan, const std::vector<float>& relaxation, PlanSlot& slot, StepArguments& g);
   void begin_steps(StepArguments& g, int begin, int end);
   void step(const StepArguments& g);
+  DeviceMonitor& device_monitor();
   bool adds_stress() const;
   bool stays() const;
   void do_steps(const StepPlan& plan, StepArguments& g, int begin, int end);
@@ -101,7 +103,7 @@ private:
   bool still_moved_ = false;  // whether displacements of nodes that never move were set from outside
   StepLaunch launch_{};
   std::unique_ptr<DeviceAccount> account_;
-  std::unique_ptr<DeviceMonitor> monitor_;                  // made on first use
+  std::unique_ptr<DeviceMonitor> monitor_;                  // made by device_monitor()
   std::unique_ptr<FrequencySearch, SearchDeleter> search_;  // made with the solver if steps follow the assembled model
 };
 

@@ -355,12 +355,14 @@ std::int64_t CudaSolver::lost_points() const
   return lost;
 }
 
-Monitor CudaSolver::monitor()
+DeviceMonitor& CudaSolver::device_monitor()
 {
   if (!monitor_)
     monitor_ = std::make_unique<DeviceMonitor>(*model_, device_);
-  return monitor_->read(arguments(0), u_[present_].data(), stream_);
+  return *monitor_;
 }
+
+Monitor CudaSolver::monitor() { return device_monitor().read(arguments(0), u_[present_].data(), stream_); }
 
 }  // namespace cuda
 }  // namespace frontalis

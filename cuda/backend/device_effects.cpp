@@ -62,7 +62,7 @@ void DeviceModel::run_fibres(const Model& model, const Discretisation& discretis
   {
     discretisation.voxel(e, voxel);
     float& bound = bounds[palette_of_voxel_[e]];
-    bound = std::max(bound, static_cast<float>(voxel.measured_at_rest));
+    bound = std::max(bound, static_cast<float>(voxel.stiffness));
   }
   stiffness_bounds_.upload(bounds.data(), bounds.size());
 }
@@ -162,7 +162,8 @@ void DeviceModel::list_arrays(Effect of_fibres, ArrayList& list)
   { (list.add(effect, what, arrays.bytes()), ...); };
   add(Effect::elasticity, "strips", strips_, slots_);
   add(Effect::elasticity, "patches", patches_, patch_corners_, node_voxels_, patch_properties_, halo_);
-  add(Effect::elasticity, "inverse masses", mobility_);
+  add(Effect::elasticity, "inverse masses", mobility_, limited_mobility_);
+  list.add_state(limited_mobility_.data(), limited_mobility_.bytes());
   add(Effect::elasticity, "palette", palette_, stiffness_bounds_, stabilisation_, law_begin_, laws_);
   add(Effect::elasticity, "added stress", added_voxels_, added_stress_);
   add(Effect::cut_voxels, "centroids of tissue", centres_, corner_stiffness_);
@@ -176,6 +177,9 @@ void DeviceModel::list_arrays(Effect of_fibres, ArrayList& list)
 
 void DeviceModel::reset()
 {
+  if (limited_mobility_.size() > 0)
+    require(cudaMemcpy(limited_mobility_.data(), mobility_.data(), mobility_.bytes(), cudaMemcpyDeviceToDevice),
+            "copying on the device");
   for (EffectPart* const part : all_parts())
     part->reset();
 }

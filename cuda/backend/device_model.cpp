@@ -116,14 +116,17 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
   add_fibres(model, discretisation);
   std::vector<NodeTask> tasks = add_tasks(model);
   // Nodes that never move have the inverse mass 0 in any case. If other nodes are held as well, or nodes are attached,
-  // the frequency bound needs inverse masses of its own.
-  if (discretisation.held.size() > still_nodes_.size() || !discretisation.bound_mass.empty())
+  // the frequency bound needs inverse masses of its own. So does the measure of growth.
+  const bool assembled = model.time_step_estimate == TimeStepEstimate::assembled;
+  if (assembled || discretisation.held.size() > still_nodes_.size() || !discretisation.bound_mass.empty())
   {
     const std::vector<float> of_node = mobility(discretisation);
     std::vector<float> of_device(nodes(), 0);
     for (std::size_t n = 0; n < of_node.size(); ++n)
       of_device[device_node_[n]] = of_node[n];
     mobility_ = DeviceArray<float>(of_device);
+    if (assembled)
+      limited_mobility_ = DeviceArray<float>(of_device);
   }
   parts_ = device_parts(model, discretisation, cut, device_node_);
   if (cut.patches)
@@ -147,7 +150,7 @@ DeviceModel::DeviceModel(const Model& model, const Discretisation& discretisatio
   static_assert(sizeof(StripSlot) == sizeof(uint2), "a slot is read as two words");
   g.slots = reinterpret_cast<const uint2*>(slots_.data());
   g.strip_count = static_cast<std::uint32_t>(strips_.size());
-  g.mobility = mobility_.data();
+  g.mobility = assembled ? limited_mobility_.data() : mobility_.data();
   g.palette = palette_.data();
   g.stiffness_bounds = stiffness_bounds_.data();
   g.stabilisation = stabilisation_.data();
@@ -225,7 +228,7 @@ std::vector<std::uint32_t> DeviceModel::add_palette(const Model& model, const Di
     d.voxel(e, voxel);
     entry.clear();
     for (const double x : { voxel.mu * voxel.tissue_volume, voxel.kappa * voxel.tissue_volume, voxel.hourglass,
-                            voxel.stiffening, voxel.measured_at_rest })
+                            voxel.stiffening, voxel.stiffness })
       entry.push_back(static_cast<float>(x));
     const auto& form = voxel.stabilisation;
     if (stabilised)

@@ -86,6 +86,8 @@ public:
   const DeviceLoads& loads() const { return loads_; }
   /// Inverse masses in the frequency bound; null if they are those of the nodes.
   float* inverse_bound_masses() const { return mobility_.data(); }
+  /// The same, limited by StepBackend::measure_growth(); null if the model is not assembled.
+  float* limited_mobility() const { return limited_mobility_.data(); }
   /// Changes the masses of attached nodes.
   void masses_changed(const std::vector<InverseMass>& masses) { attachment_.masses_changed(masses); }
   DeviceViscosity& viscosity() { return viscosity_; }
@@ -134,7 +136,7 @@ private:
   DeviceArray<Strip> strips_;
   double filled_ = 1;
   DeviceArray<StripSlot> slots_;
-  DeviceArray<float> mobility_, stiffness_bounds_;
+  DeviceArray<float> mobility_, limited_mobility_, stiffness_bounds_;
   DeviceArray<float4> palette_, stabilisation_, centres_, corner_stiffness_;
   DeviceArray<std::uint32_t> law_begin_;
   DeviceArray<LawEntry> laws_;

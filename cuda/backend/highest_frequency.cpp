@@ -78,7 +78,7 @@ double CudaSolver::highest_frequency_squared()
   queue_forces(u_[present_].data(), activation, s.present.data(), true);
   LanczosIteration g{};
   g.nodes = static_cast<std::uint32_t>(device_.nodes());
-  g.mobility = s.mobility.size() > 0 ? s.mobility.data() : device_.arguments().mobility;
+  g.mobility = s.mobility.size() > 0 ? s.mobility.data() : device_.inverse_bound_masses();
   g.followers = s.followers.data();
   g.follower_begin = s.follower_begin.data();
   g.masters = s.follower_begin.size() > 0 ? static_cast<std::uint32_t>(s.follower_begin.size()) - 1 : 0;
@@ -176,6 +176,14 @@ std::vector<ModeShare> CudaSolver::shares_in(const std::vector<double>& mode)
   }
   std::sort(shares.begin(), shares.end(), [](const ModeShare& a, const ModeShare& b) { return a.node < b.node; });
   return shares;
+}
+
+void CudaSolver::measure_growth(double found)
+{
+  device_monitor().limit_mobility(arguments(0), u_[present_].data(), device_.inverse_bound_masses(),
+                                  static_cast<float>(found), device_.limited_mobility(), stream_);
+  // Earlier plans measured growth since another search.
+  plans_ = 0;
 }
 
 void CudaSolver::masses_changed(const std::vector<std::int32_t>& nodes)

@@ -118,6 +118,14 @@ __global__ void __launch_bounds__(block)
     parts[blockIdx.x] = found[0];
 }
 
+__global__ void __launch_bounds__(block) limit_mobility(const __grid_constant__ MonitorVoxels voxels,
+                                                        const float* inverse_masses, float found, float* mobility)
+{
+  // fminf returns the inverse mass if the other number is NaN.
+  for (std::uint32_t n = blockIdx.x * block + threadIdx.x; n < voxels.nodes; n += gridDim.x * block)
+    mobility[n] = fminf(inverse_masses[n], found / voxels.node_stiffness[n]);
+}
+
 // The bits of floats that are not negative are in the order of the floats; those of NaN are the largest.
 __global__ void __launch_bounds__(block)
     find_largest_speed(const __grid_constant__ StepArguments g, std::uint32_t nodes, std::uint32_t* bits)
@@ -135,8 +143,12 @@ __global__ void __launch_bounds__(block)
 
 }  // namespace cuda
 
-cudaError_t launch_monitor(const StepArguments& arguments, const MonitorVoxels& voxels, const float4* u,
-                           PlaneMonitor* parts, StiffestVoxel* stiffest, cudaStream_t stream)
+namespace
+{
+
+// Sums the voxels' energies and their stiffness at nodes.
+void add_up_voxels(const StepArguments& arguments, const MonitorVoxels& voxels, const float4* u, PlaneMonitor* parts,
+                   cudaStream_t stream)
 {
   const bool cut = arguments.centres != nullptr;
   const auto monitor = cut ? cuda::monitor<true> : cuda::monitor<false>;
@@ -145,7 +157,24 @@ cudaError_t launch_monitor(const StepArguments& arguments, const MonitorVoxels& 
   cudaMemsetAsync(voxels.node_stiffness, 0, voxels.nodes * sizeof(float), stream);
   for (int corner = 0; corner < 8; ++corner)
     add_to_corners<<<monitor_blocks, cuda::block, 0, stream>>>(arguments, voxels, corner);
+}
+
+}  // namespace
+
+cudaError_t launch_monitor(const StepArguments& arguments, const MonitorVoxels& voxels, const float4* u,
+                           PlaneMonitor* parts, StiffestVoxel* stiffest, cudaStream_t stream)
+{
+  add_up_voxels(arguments, voxels, u, parts, stream);
   cuda::find_stiffest<<<monitor_blocks, cuda::block, 0, stream>>>(arguments, voxels, u, stiffest);
+  return cudaGetLastError();
+}
+
+cudaError_t launch_limit_mobility(const StepArguments& arguments, const MonitorVoxels& voxels, const float4* u,
+                                  PlaneMonitor* parts, const float* inverse_masses, float found, float* mobility,
+                                  cudaStream_t stream)
+{
+  add_up_voxels(arguments, voxels, u, parts, stream);
+  cuda::limit_mobility<<<monitor_blocks, cuda::block, 0, stream>>>(voxels, inverse_masses, found, mobility);
   return cudaGetLastError();
 }
 

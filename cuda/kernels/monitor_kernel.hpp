@@ -49,6 +49,12 @@ constexpr int monitor_blocks = 264;
 cudaError_t launch_monitor(const StepArguments& arguments, const MonitorVoxels& voxels, const float4* u,
                            PlaneMonitor* parts, StiffestVoxel* stiffest, cudaStream_t stream);
 
+/// Writes the smaller of each node's inverse mass and `found` [1/s2] over the sum of the bounds of its voxels at `u`
+/// [N/m] to `mobility`.
+cudaError_t launch_limit_mobility(const StepArguments& arguments, const MonitorVoxels& voxels, const float4* u,
+                                  PlaneMonitor* parts, const float* inverse_masses, float found, float* mobility,
+                                  cudaStream_t stream);
+
 /// Writes the bits of the largest speed of device nodes [m/s] to `bits`, which must be 0 before. `nodes`: their number,
 /// including the placeholder, node 0.
 cudaError_t launch_largest_speed(const StepArguments& arguments, std::uint32_t nodes, std::uint32_t* bits,

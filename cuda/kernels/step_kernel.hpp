@@ -134,7 +134,7 @@ struct StepArguments : physics::Kick<float>
   // Palette of materials of voxels. Each entry has shear and bulk modulus times tissue volume [N m], hourglass
   // stiffness [N/m], and the stiffening of the neo-Hookean law. Entry 0 has no stiffness.
   const float4* palette;
-  const float* stiffness_bounds;   ///< per palette entry: VoxelProperties::measured_at_rest [N/m]
+  const float* stiffness_bounds;   ///< per palette entry: VoxelProperties::stiffness [N/m]
   const float4* stabilisation;     ///< bending, coupling, torsion, warping [N m]; null: scalar hourglass control
   const float4* centres;           ///< physics::TissueCentre of each palette entry; null if all voxels are whole
   const float4* corner_stiffness;  ///< two per palette entry: Discretisation::corner_stiffness; null with `centres`

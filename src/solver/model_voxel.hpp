@@ -34,7 +34,7 @@ struct ModelVoxel
              properties.stiffening };
   }
   double hourglass() const { return properties.hourglass; }
-  double bound_at_rest() const { return properties.measured_at_rest; }
+  double bound_at_rest() const { return properties.stiffness; }
   physics::AssumedStrain<double> stabilisation() const { return properties.stabilisation; }
 
   bool has_laws() const { return !properties.laws.empty(); }

@@ -184,7 +184,7 @@ TEST_P(Motion, FastNodesMoveLittleInAStep)
 {
   const Model model = test::block_model();
   const auto solver_ = solver(model);
-  const double slow = solver_->time_step(), speed = 0.48 * model.spacing[0] / slow, seconds = 100 * slow;
+  const double slow = solver_->time_step(), speed = 0.6 * model.spacing[0] / slow, seconds = 100 * slow;
   solver_->set_velocities(Vectors(model.nodes.size(), { { 0, 0, speed } }));
   solver_->advance(0.3 * seconds, {});
   EXPECT_NEAR(solver_->time_step(), slow / 4, 0.01 * slow) << "as measured";
@@ -192,6 +192,27 @@ TEST_P(Motion, FastNodesMoveLittleInAStep)
   EXPECT_NEAR(static_cast<double>(solver_->profile().steps), 400, 40);
   solver_->reset();
   EXPECT_NEAR(solver_->time_step(), slow, 0.01 * slow);
+}
+
+TEST_P(Motion, StepsFollowTissueThatStiffensAfterASearch)
+{
+  Model model = test::block_model();
+  model.time_step_estimate = TimeStepEstimate::assembled;
+  const auto solver_ = solver(model), reference = make_solver(std::make_shared<const Model>(model), { "reference" });
+  const double seconds = 20 * solver_->time_step();
+  Vectors v(model.nodes.size());
+  for (std::size_t n = 0; n < v.size(); ++n)
+    v[n][0] = -test::rest(model, n)[0] / seconds;
+  for (Solver* const each : { solver_.get(), reference.get() })
+  {
+    each->set_velocities(v);
+    each->advance(0.1 * seconds, {});
+    const double at_search = each->monitor().critical_time_step;
+    each->advance(0.9 * seconds, {});
+    EXPECT_LT(each->profile().steps, 25) << "no other search is due";
+    EXPECT_LT(each->monitor().critical_time_step, 0.95 * at_search);
+  }
+  EXPECT_NEAR(solver_->monitor().critical_time_step, reference->monitor().critical_time_step, 1e-7);
 }
 
 TEST_P(Motion, BonesCarryTheirNodes)

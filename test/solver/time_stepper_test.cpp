@@ -23,6 +23,7 @@ struct Script
   Work work;
   double found = 0;  // what a search finds [1/s2]; 0: the bound
   int searches = 0;
+  double growth_from = 0;             // of the latest call of measure_growth() [1/s2]
   std::vector<std::int32_t> changed;  // nodes of the latest change of masses
 };
 
@@ -72,6 +73,7 @@ public:
     ++script_.searches;
     return script_.found > 0 ? script_.found : script_.bound;
   }
+  void measure_growth(double found) override { script_.growth_from = found; }
   std::vector<FoundMode> modes_above(double) override { return { { script_.found, { { 5, 0.01F } } } }; }
   void masses_changed(const std::vector<std::int32_t>& nodes) override { script_.changed = nodes; }
   Monitor monitor() override
@@ -340,6 +342,7 @@ TEST(TimeStepper, adds_mass_where_a_search_finds_that_steps_would_be_short)
   EXPECT_EQ(little->script.searches, 1) << "the mass counts at the next search";
   EXPECT_EQ(little->script.changed, std::vector<std::int32_t>{ 5 });
   EXPECT_EQ(much->script.searches, 2);
+  EXPECT_EQ(much->script.growth_from, 3 * allowed) << "growth is measured since the latest search";
   const double added = much->solver.monitor().added_mass;
   EXPECT_GT(added, 0);
   double mass = 0;

@@ -8,9 +8,10 @@
 namespace frontalis
 {
 
-// Each thread processes its slab; the sums of the planes are then added in order.
+// Computes the monitor and, if `found` is not 0, what measure_growth() does with it. Each thread processes its slab;
+// the sums of the planes are then added in order.
 template <class Real>
-Monitor CpuSolver<Real>::monitor()
+Monitor CpuSolver<Real>::examine(double found)
 {
   const Arguments from = arguments(0, nullptr);
   CpuKernelArguments<double> g{};
@@ -56,9 +57,11 @@ Monitor CpuSolver<Real>::monitor()
         choice_.monitor(g, first, std::min(last, rows_.planes - 1), planes.data(), stiffness.data());
         team_.barrier();
         // The displacements in wide_ are no longer needed, so that its memory can be used for the sums.
-        bounds[t] =
-            bound_of_nodes(discretisation_, *model_, stiffness.data(), { first_voxel(first - 1), first_voxel(last) },
-                           { rows_.plane_nodes[first], rows_.plane_nodes[last] }, wide_[0].data());
+        const IndexRange nodes{ rows_.plane_nodes[first], rows_.plane_nodes[last] };
+        bounds[t] = bound_of_nodes(discretisation_, *model_, stiffness.data(),
+                                   { first_voxel(first - 1), first_voxel(last) }, nodes, mobility_, wide_[0].data());
+        if (found > 0)
+          limit_mobility(discretisation_, nodes, wide_[0].data(), found, mobility_);
       });
   PlaneMonitor sum;
   for (const PlaneMonitor& plane : planes)
@@ -69,7 +72,7 @@ Monitor CpuSolver<Real>::monitor()
   return monitor_of(sum, bound.frequency_squared, stiffest_voxel_at(*model_, bound.node, stiffness.data()));
 }
 
-template Monitor CpuSolver<float>::monitor();
-template Monitor CpuSolver<double>::monitor();
+template Monitor CpuSolver<float>::examine(double found);
+template Monitor CpuSolver<double>::examine(double found);
 
 }  // namespace frontalis

@@ -3,7 +3,6 @@
 #include "frontalis/physics/viscosity.hpp"
 #include "frontalis/solver/backend.hpp"
 #include "solver/stepping/effect_switches.hpp"
-#include "solver/stepping/step_bound.hpp"
 #include "solver/stepping/time_stepper.hpp"
 
 #include <fmt/format.h>
@@ -27,7 +26,6 @@ template <class Real>
 CpuSolver<Real>::CpuSolver(const BackendInput& input, const std::string& remark)
     : Base(input, 2 * Tile::width, parts(choose_cpu_kernel(), Real(0))),
       rows_(*model_, discretisation_),
-      mobility_(mobility(discretisation_)),
       choice_(choose_cpu_kernel()),
       kernel_(pick(choice_, Real(0))),
       team_(input.settings.threads),
@@ -76,7 +74,6 @@ void CpuSolver<Real>::masses_changed(const std::vector<std::int32_t>& nodes)
   Base::masses_changed(nodes);
   for (const std::int32_t n : nodes)
     inverse_mass_[n] = static_cast<float>(1 / discretisation_.node_mass[n]);
-  mobility_ = mobility(discretisation_);
 }
 
 template <class Real>
@@ -85,7 +82,6 @@ void CpuSolver<Real>::list_arrays(ArrayList& list)
   Base::list_arrays(list);
   rows_.list_arrays(effect_of_fibres(*model_), list);
   list.add("inverse masses", inverse_mass_);
-  list.add("inverse masses", mobility_);
   for (std::size_t axis = 0; axis < 3; ++axis)
   {
     list.add("motion", next_[axis]);

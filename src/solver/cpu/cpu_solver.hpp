@@ -27,13 +27,14 @@ public:
   PlanMeasures run(const StepPlan& plan) override;
   void effects_switched() override;
   void masses_changed(const std::vector<std::int32_t>& nodes) override;
-  Monitor monitor() override;
+  Monitor monitor() override { return examine(0); }
+  void measure_growth(double found) override { examine(found); }
   Work work(bool open) override;
 
 private:
   using Base = HostBackend<Real, float>;
-  using Base::account_, Base::conditions_, Base::discretisation_, Base::model_, Base::relaxed_, Base::runs, Base::u_,
-      Base::v_;
+  using Base::account_, Base::conditions_, Base::discretisation_, Base::mobility_, Base::model_, Base::relaxed_,
+      Base::runs, Base::u_, Base::v_;
   using typename Base::Components;
   using Arguments = CpuKernelArguments<Real>;
 
@@ -45,11 +46,12 @@ private:
   const Components& found_forces() const override { return next_; }
   void share_planes(const std::vector<std::int32_t>& plane_tiles);
   Arguments arguments(double dt, const float* activation);
+  Monitor examine(double found);
   void kick(Arguments& g, double seconds) const;
   void choose_passive();
 
   VoxelRows rows_;
-  std::vector<float> inverse_mass_, mobility_, with_length_, with_passive_;
+  std::vector<float> inverse_mass_, with_length_, with_passive_;
   Components next_, rounding_;
   std::vector<FibreMemory> fibre_memory_;
   std::int32_t buffer_stride_ = 0;

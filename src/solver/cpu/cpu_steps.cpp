@@ -33,7 +33,7 @@ CpuKernelArguments<Real> CpuSolver<Real>::arguments(double dt, const float* acti
   }
   g.stretch_half_sum = static_cast<Real>(discretisation_.stretch_half_sum);
   g.inverse_mass = inverse_mass_.data();
-  g.mobility = mobility_.empty() ? g.inverse_mass : mobility_.data();
+  g.mobility = mobility_.data();
   g.tiles = rows_.tiles.data();
   g.plane_tiles = rows_.plane_tiles.data();
   g.stiffness = rows_.stiffness.data();

@@ -122,7 +122,7 @@ TileStiffness stiffness_of(const TileVoxels& voxels)
     s.kappa[lane] = static_cast<float>(v.kappa * v.tissue_volume);
     s.stiffening[lane] = static_cast<float>(v.stiffening);
     s.hourglass[lane] = static_cast<float>(v.hourglass);
-    s.bound[lane] = static_cast<float>(v.measured_at_rest);
+    s.bound[lane] = static_cast<float>(v.stiffness);
   }
   return s;
 }
@@ -203,7 +203,7 @@ void VoxelRows::renew_bounds(const Discretisation& discretisation)
       if (const auto e = tiles[t].voxel(lane); e >= 0)
       {
         discretisation.voxel(static_cast<std::size_t>(e), voxel);
-        stiffness[t].bound[lane] = static_cast<float>(voxel.measured_at_rest);
+        stiffness[t].bound[lane] = static_cast<float>(voxel.stiffness);
       }
 }
 

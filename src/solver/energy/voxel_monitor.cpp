@@ -26,7 +26,7 @@ Monitor monitor_of(const PlaneMonitor& sum, double frequency_squared, std::int32
 }
 
 Monitor monitor_voxels(const Model& model, const Discretisation& d, const std::vector<std::array<double, 3>>& u,
-                       const std::vector<std::array<double, 3>>& v)
+                       const std::vector<std::array<double, 3>>& v, const std::vector<float>& mobility)
 {
   const auto& h = model.spacing;
   const std::array<double, 3> scale{ { 0.25 / h[0], 0.25 / h[1], 0.25 / h[2] } };
@@ -50,7 +50,7 @@ Monitor monitor_voxels(const Model& model, const Discretisation& d, const std::v
     stiffness[e] = readings.stiffness;
     sum.add(PlaneMonitor::of_voxel(readings, static_cast<std::int32_t>(e)));
   }
-  const StepBound bound = step_bound(d, model, stiffness);
+  const StepBound bound = step_bound(d, model, stiffness, mobility);
   return monitor_of(sum, bound.frequency_squared, stiffest_voxel_at(model, bound.node, stiffness.data()));
 }
 

@@ -82,7 +82,18 @@ Monitor ReferenceSolver::monitor()
   NodalVectors u, v;
   get(NodalField::displacements, u);
   get(NodalField::velocities, v);
-  return monitor_voxels(*model_, discretisation_, u, v);
+  return monitor_voxels(*model_, discretisation_, u, v, mobility_);
+}
+
+void ReferenceSolver::measure_growth(double found)
+{
+  const NodeShare share = all_nodes();
+  find_forces(share, u_);
+  std::vector<double> sum(model_->nodes.size());
+  const IndexRange nodes{ 0, share.end_node };
+  bound_of_nodes(discretisation_, *model_, stiffness_.data(), { 0, static_cast<std::int32_t>(stiffness_.size()) },
+                 nodes, mobility_, sum.data());
+  limit_mobility(discretisation_, nodes, sum.data(), found, mobility_);
 }
 
 Work ReferenceSolver::work(bool open)
@@ -124,7 +135,8 @@ PlanMeasures ReferenceSolver::run(const StepPlan& plan)
       part->add_forces(share, ForceSink<double>(f));
     const Components before = u_;
     if (plan.bound_every_step || step + 1 == plan.steps)
-      worst = physics::larger_or_none(worst, step_bound(discretisation_, *model_, stiffness_).frequency_squared);
+      worst =
+          physics::larger_or_none(worst, step_bound(discretisation_, *model_, stiffness_, mobility_).frequency_squared);
     if (account_)
       account_->before(share.first_node, share.end_node, v);
     for (int axis = 0; axis < 3; ++axis)

@@ -36,16 +36,11 @@ std::int64_t steps_in_motion(double frequency_squared)
 
 }  // namespace
 
-double AssembledEstimate::covered(double growth) const { return found_ + std::max(growth, growth_); }
+double AssembledEstimate::covered(double measured) const { return std::max(found_, frequency_margin * measured); }
 
 bool AssembledEstimate::in_motion() const { return known() && steps_valid_ < longest_valid; }
 
-double AssembledEstimate::frequency_squared(double growth) const
-{
-  return found_ * (covered(growth) / (found_ + growth_));
-}
-
-bool AssembledEstimate::renew(const std::vector<float>& activation, bool moving, double growth, double most,
+bool AssembledEstimate::renew(const std::vector<float>& activation, bool moving, double measured, double most,
                               const Search& search, bool closely)
 {
   activation_.resize(activation.size());
@@ -54,8 +49,7 @@ bool AssembledEstimate::renew(const std::vector<float>& activation, bool moving,
     activated = activated || activation[m] > activation_[m];
   if (moving)
     steps_valid_ = std::min(steps_valid_, std::max(fewest_valid, steps_in_motion(found_) / (closely ? 2 : 1)));
-  const bool grown =
-      known() && covered(growth) > growth_allowed * (found_ + growth_) && steps_ >= steps_until_growth_counts;
+  const bool grown = known() && covered(measured) > growth_allowed * found_ && steps_ >= steps_until_growth_counts;
   if (known() && !activated && !grown && steps_ < steps_valid_)
     return false;
   // A search after growth keeps the activations, because they may be on their way to those.
@@ -64,7 +58,7 @@ bool AssembledEstimate::renew(const std::vector<float>& activation, bool moving,
     activation_[m] = activation[m] > 0 ? std::min(1.0F, activation[m] + ahead) : 0;
   const double squared = search(activation_), least = slowest_fall * found_;
   const bool changes = !known() || activated || moving || grown;
-  const bool steady = !changes && std::abs(growth - growth_) <= steady_change * (found_ + growth_) &&
+  const bool steady = !changes && covered(measured) <= (1 + steady_change) * found_ &&
                       std::abs(squared - latest_) <= steady_change * latest_;
   latest_ = squared;
   if (changes)
@@ -72,18 +66,17 @@ bool AssembledEstimate::renew(const std::vector<float>& activation, bool moving,
   else
     steps_valid_ = steady ? longest_valid : std::min(2 * steps_valid_, longest_valid);
   const double allowance = steps_valid_ < longest_valid ? margin_in_motion : frequency_margin;
-  found_ = squared > 0 && std::isfinite(squared) ? std::min(most + growth, allowance * squared) : most + growth;
+  found_ = squared > 0 && std::isfinite(squared) ? allowance * squared : most;
   if (found_ < least)
   {
     found_ = least;
     steps_valid_ = steps_in_motion(squared);
   }
   softest_ = softest_ > 0 ? std::min(softest_, found_) : found_;
-  growth_ = growth;
   steps_ = 0;
   return true;
 }
 
-void AssembledEstimate::discard() { found_ = growth_ = softest_ = 0; }
+void AssembledEstimate::discard() { found_ = softest_ = 0; }
 
 }  // namespace frontalis

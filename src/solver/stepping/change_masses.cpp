@@ -2,6 +2,9 @@
 
 #include "solver/stepping/time_stepper.hpp"
 
+#include <cmath>
+#include <limits>
+
 namespace frontalis
 {
 namespace
@@ -26,6 +29,7 @@ double TimeStepper::search_frequency(const std::vector<float>& activation)
       break;
     squared = backend_->highest_frequency_squared();
   }
+  backend_->measure_growth(squared > 0 && std::isfinite(squared) ? squared : std::numeric_limits<double>::infinity());
   return squared;
 }
 

@@ -335,7 +335,6 @@ void Discretisation::mix(std::size_t e, VoxelProperties& out) const
                                            h[0], h[1], h[2]);
   for (const auto& stiffness : added)
     out.stiffness += stiffness->in_voxel(e);
-  out.measured_at_rest = model.time_step_estimate == TimeStepEstimate::assembled ? 0 : out.stiffness;
   out.centre = {};
   if (!model.tissue_centre.empty())
     out.centre = { model.tissue_centre[e][0], model.tissue_centre[e][1], model.tissue_centre[e][2] };
@@ -358,7 +357,7 @@ void Discretisation::bound_at_rest()
     mix(e, v);
     stiffness[e] = v.stiffness;
   }
-  frequency_squared_max = step_bound(*this, *model_, stiffness).frequency_squared;
+  frequency_squared_max = step_bound(*this, *model_, stiffness, mobility(*this)).frequency_squared;
 }
 
 void Discretisation::list_arrays(ArrayList& list) const

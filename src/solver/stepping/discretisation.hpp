@@ -41,9 +41,6 @@ struct VoxelProperties
   physics::AssumedStrain<double> stabilisation{};  ///< [N m]; only with assumed-strain hourglass control
   /// Bound of the largest eigenvalue of the voxel's stiffness at rest, with every muscle at full activation [N/m].
   double stiffness = 0;
-  /// What backends take for `stiffness` in the bound that they measure: 0 if the highest frequency of the assembled
-  /// model sets the time step, so that they measure only how much the bound has grown since rest (AssembledEstimate).
-  double measured_at_rest = 0;
   physics::TissueCentre<double> centre{};  ///< point where the voxel's stress is computed
   std::vector<LawPart> laws;
   /// Prony terms as means over the materials: fractions weighted by stiffness, rates [1/s] weighted by the stiffness

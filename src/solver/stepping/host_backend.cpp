@@ -3,6 +3,7 @@
 #include "frontalis/physics/time_step.hpp"
 #include "frontalis/physics/viscosity.hpp"
 #include "solver/skin/bound_points.hpp"
+#include "solver/stepping/step_bound.hpp"
 
 #include <cstring>
 
@@ -29,7 +30,9 @@ struct HostState : BackendState
 template <class Real, class Relaxed>
 HostBackend<Real, Relaxed>::HostBackend(const BackendInput& input, std::size_t padding,
                                         const PartKernels<Real>& kernels)
-    : StepBackend(input), parts_(node_parts<Real>(*model_, discretisation_, kernels))
+    : StepBackend(input),
+      mobility_(mobility(discretisation_)),
+      parts_(node_parts<Real>(*model_, discretisation_, kernels))
 {
   for (auto* field : { &u_, &v_ })
     for (auto& component : *field)
@@ -44,6 +47,7 @@ void HostBackend<Real, Relaxed>::rest()
   for (auto* field : { &u_, &v_ })
     for (auto& component : *field)
       std::fill(component.begin(), component.end(), Real(0));
+  mobility_ = mobility(discretisation_);
   relaxed_.reset();
   for (const auto& part : parts_)
     part->reset();
@@ -69,6 +73,10 @@ void HostBackend<Real, Relaxed>::list_arrays(ArrayList& list)
   for (auto* field : { &u_, &v_ })
     for (auto& component : *field)
       list.add_state("motion", component);
+  if (model_->time_step_estimate == TimeStepEstimate::assembled)
+    list.add_state("inverse masses", mobility_);
+  else
+    list.add("inverse masses", mobility_);
   relaxed_.list_arrays(list);
   for (const auto& part : parts_)
     part->list_arrays(list);
@@ -205,6 +213,7 @@ double HostBackend<Real, Relaxed>::highest_frequency_squared()
 template <class Real, class Relaxed>
 void HostBackend<Real, Relaxed>::masses_changed(const std::vector<std::int32_t>& /*nodes*/)
 {
+  mobility_ = mobility(discretisation_);
   if (search_)
     search_->masses_changed(discretisation_);
   for (NodePart<Real>* const part : active_parts())

@@ -87,6 +87,7 @@ protected:
   Components u_, v_;
   RelaxedStresses<Relaxed> relaxed_;
   std::unique_ptr<EnergyAccount<Real>> account_;  // null without a ledger
+  std::vector<float> mobility_;  // by which the bounds of a node's voxels are multiplied: mobility(), limit_mobility()
 
 private:
   std::vector<std::unique_ptr<NodePart<Real>>> parts_;

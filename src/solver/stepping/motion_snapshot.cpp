@@ -55,8 +55,8 @@ void TimeStepper::restore(const Snapshot& snapshot)
   controller_.restore(saved->time_step);
   if (ledger_)
     ledger_->restore(saved->ledger);
-  backend_->restore(*saved->backend);
   replace_masses(before);
+  backend_->restore(*saved->backend);
   renew_conditions();
   // The running effects are not restored, so that the restored state must be adapted to them.
   std::vector<Effect> switched;

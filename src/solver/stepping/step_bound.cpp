@@ -17,7 +17,7 @@ const std::vector<double>& masses_for_bound(const Discretisation& discretisation
 }  // namespace
 
 StepBound bound_of_nodes(const Discretisation& discretisation, const Model& model, const double* stiffness,
-                         IndexRange voxels, IndexRange nodes, double* sum)
+                         IndexRange voxels, IndexRange nodes, const std::vector<float>& mobility, double* sum)
 {
   std::fill(sum + nodes.first, sum + nodes.last, 0.0);
   for (auto e = voxels.first; e < voxels.last; ++e)
@@ -25,21 +25,18 @@ StepBound bound_of_nodes(const Discretisation& discretisation, const Model& mode
       if (const auto node = model.voxel_nodes[e][corner]; node >= nodes.first && node < nodes.last)
         sum[node] += stiffness[e] * discretisation.factor_at(e, corner);
   StepBound bound;
-  const std::vector<double>& mass = masses_for_bound(discretisation);
-  auto held = std::lower_bound(discretisation.held.begin(), discretisation.held.end(), nodes.first);
   for (auto n = nodes.first; n < nodes.last; ++n)
-    if (held != discretisation.held.end() && *held == n)
-      ++held;
-    else
-      bound.add({ sum[n] / mass[n], n });
+    if (mobility[n] > 0)
+      bound.add({ sum[n] * double(mobility[n]), n });
   return bound;
 }
 
-StepBound step_bound(const Discretisation& discretisation, const Model& model, const std::vector<double>& stiffness)
+StepBound step_bound(const Discretisation& discretisation, const Model& model, const std::vector<double>& stiffness,
+                     const std::vector<float>& mobility)
 {
   std::vector<double> sum(model.nodes.size());
   return bound_of_nodes(discretisation, model, stiffness.data(), { 0, static_cast<std::int32_t>(stiffness.size()) },
-                        { 0, static_cast<std::int32_t>(sum.size()) }, sum.data());
+                        { 0, static_cast<std::int32_t>(sum.size()) }, mobility, sum.data());
 }
 
 std::int32_t stiffest_voxel_at(const Model& model, std::int32_t node, const double* stiffness)
@@ -67,13 +64,21 @@ std::int32_t stiffest_voxel_at(const Model& model, std::int32_t node, const doub
 std::vector<float> mobility(const Discretisation& discretisation)
 {
   std::vector<float> result;
-  if (discretisation.held.empty() && discretisation.bound_mass.empty())
-    return result;
+  result.reserve(discretisation.node_mass.size());
   for (const double mass : masses_for_bound(discretisation))
     result.push_back(static_cast<float>(1 / mass));
   for (const auto n : discretisation.held)
     result[n] = 0;
   return result;
+}
+
+void limit_mobility(const Discretisation& discretisation, IndexRange nodes, const double* sum, double found,
+                    std::vector<float>& mobility)
+{
+  const std::vector<double>& mass = masses_for_bound(discretisation);
+  for (auto n = nodes.first; n < nodes.last; ++n)
+    if (mobility[n] > 0)
+      mobility[n] = static_cast<float>(std::min(1 / mass[n], found / sum[n]));
 }
 
 }  // namespace frontalis

@@ -26,16 +26,23 @@ struct IndexRange
 };
 
 /// Bound of some nodes, from the stiffness bound of every voxel [N/m]. `voxels`: at least the voxels at these nodes.
-/// `sum`: memory for one number per node of the model; only the entries of these nodes are used.
+/// `mobility`: of every node. `sum`: receives the sum of the bounds at each of these nodes; it has an entry per node of
+/// the model.
 StepBound bound_of_nodes(const Discretisation& discretisation, const Model& model, const double* stiffness,
-                         IndexRange voxels, IndexRange nodes, double* sum);
+                         IndexRange voxels, IndexRange nodes, const std::vector<float>& mobility, double* sum);
 
-StepBound step_bound(const Discretisation& discretisation, const Model& model, const std::vector<double>& stiffness);
+StepBound step_bound(const Discretisation& discretisation, const Model& model, const std::vector<double>& stiffness,
+                     const std::vector<float>& mobility);
 
 /// Index of the stiffest of the voxels at a node; -1 if `node` is -1.
 std::int32_t stiffest_voxel_at(const Model& model, std::int32_t node, const double* stiffness);
 
-/// Inverse of each node's mass in the bound [1/kg], 0 for held nodes; empty if it is 1 / node_mass at every node.
+/// Inverse of each node's mass in the bound [1/kg], 0 for held nodes.
 std::vector<float> mobility(const Discretisation& discretisation);
+
+/// Changes the mobility of some nodes so that their bound is at most `found` [1/s2] now and grows in proportion to the
+/// stiffness of their voxels (StepBackend::measure_growth). `sum`: as found by bound_of_nodes().
+void limit_mobility(const Discretisation& discretisation, IndexRange nodes, const double* sum, double found,
+                    std::vector<float>& mobility);
 
 }  // namespace frontalis

@@ -15,11 +15,12 @@ namespace
 
 // These values are empirical: with them the hard cases of doc/stability.md pass.
 constexpr double cautious_share = 0.55;  // cautious steps: fraction of the critical step
-constexpr int cautious_plan = 8;         // number of steps in a cautious plan, largest while tissue is fast
+constexpr int cautious_plan = 8;         // number of steps in a cautious plan
 constexpr int vibration_plan = 32;       // largest number of steps in a plan while tissue vibrates
+constexpr int fast_plan = 16;            // and while it moves fast
 // Longest path of a node in a step, in shortest voxel edges. Tissue that moves faster crushes voxels within a few
 // steps.
-constexpr double way_per_step = 0.12;
+constexpr double way_per_step = 0.15;
 constexpr double least_share = 0.1;  // of the step for that; what needs less is flung away, which the guard reports
 // The following constants define signs of fast change, and the number of cautious steps after each.
 constexpr double growth_between_plans = 1.1;  // ratio of covered squared frequencies of successive plans
@@ -59,25 +60,12 @@ void TimeStepController::reset()
   state_.measured = state_.latest_measured = measured_at_rest();
 }
 
-double TimeStepController::not_measured() const
-{
-  return !assembled_ ? 0 : state_.assembled.known() ? state_.assembled.found() : bound_at_rest_;
-}
-
 double TimeStepController::covered(double measured) const
 {
-  return assembled_ && state_.assembled.known() ? state_.assembled.covered(measured) : not_measured() + measured;
+  return state_.assembled.known() ? state_.assembled.covered(measured) : measured;
 }
 
-double TimeStepController::frequency_squared(double measured) const
-{
-  return assembled_ && state_.assembled.known() ? state_.assembled.frequency_squared(measured) : covered(measured);
-}
-
-double TimeStepController::critical_step_at(double measured) const
-{
-  return 2 / std::sqrt(frequency_squared(measured));
-}
+double TimeStepController::critical_step_at(double measured) const { return 2 / std::sqrt(covered(measured)); }
 
 double TimeStepController::critical_step(double share) const { return share * critical_step_at(state_.measured); }
 
@@ -95,7 +83,7 @@ void TimeStepController::slow_down(double share)
   slow_share_ = share;
 }
 
-double TimeStepController::alarming() const { return growth_between_plans * covered(state_.measured) - not_measured(); }
+double TimeStepController::alarming() const { return growth_between_plans * covered(state_.measured); }
 
 TimeStepController::Choice TimeStepController::choose(double remaining, double longest, double longest_plan,
                                                       const BackendTraits& backend) const
@@ -115,7 +103,7 @@ TimeStepController::Choice TimeStepController::choose(double remaining, double l
   else if (vibrates)
     most_steps = std::min(vibration_plan, most_steps);
   if (fast)
-    most_steps = std::min(cautious_plan, most_steps);
+    most_steps = std::min(fast_plan, most_steps);
   if (in_motion)
     most_steps = static_cast<int>(std::min<std::int64_t>(most_steps, state_.assembled.steps_left()));
   // Without the tolerance, a rounding error could add a step.
@@ -130,7 +118,7 @@ void TimeStepController::observe(double measured, double speed, int steps)
   const double now = covered(measured),
                at_rest = state_.assembled.known() ? state_.assembled.softest() : bound_at_rest_;
   const bool changes = std::abs(now - state_.latest_covered) > vibration_change * state_.latest_covered;
-  const bool vibrates = changes && frequency_squared(measured) > stiffening_ratio * at_rest;
+  const bool vibrates = changes && now > stiffening_ratio * at_rest;
   const bool stiffens = measured > alarming();
   state_.latest_covered = now;
   state_.cautious_steps_left = std::max(stiffens ? steps_after_stiffening : 0, state_.cautious_steps_left - steps);
@@ -147,7 +135,7 @@ void TimeStepController::renew_assembled(const std::vector<float>& activation, b
                                          const AssembledEstimate::Search& search, bool closely)
 {
   if (state_.assembled.renew(activation, moving, state_.latest_measured, bound_at_rest_, search, closely))
-    state_.measured = state_.latest_measured;
+    state_.measured = state_.latest_measured = state_.assembled.latest();
 }
 
 bool TimeStepController::muscles_switched(const std::vector<float>& from, const std::vector<float>& to)
@@ -170,12 +158,20 @@ void TimeStepController::bone_jumped()
 
 void TimeStepController::displacements_set(double measured)
 {
+  state_.assembled.discard();
   state_.measured = measured_at_rest();
   if (std::isfinite(measured))
     state_.measured = std::max(measured, measured_at_rest());
   state_.latest_measured = state_.measured;
   state_.cautious_steps_left = steps_after_stiffening;
+}
+
+void TimeStepController::set_bound_at_rest(double squared)
+{
+  bound_at_rest_ = squared;
   state_.assembled.discard();
+  if (assembled_)
+    state_.measured = state_.latest_measured = squared;
 }
 
 }  // namespace frontalis

@@ -8,9 +8,9 @@ namespace frontalis
 
 /// Chooses the length of steps, and the number of steps until the backend measures again, from what a backend measures,
 /// the activations, and jumps of bones. A backend measures the bound of the squared frequency at nodes or, if the
-/// highest frequency of the assembled model sets the time step, the growth of this bound since rest [1/s2]. It also
-/// measures how fast nodes move: a node that moves far in a step may crush a voxel, whose stiffness then grows before
-/// it is measured.
+/// highest frequency of the assembled model sets the time step, how much this can have grown since the latest search
+/// (AssembledEstimate) [1/s2]. It also measures how fast nodes move: a node that moves far in a step may crush a voxel,
+/// whose stiffness then grows before it is measured.
 ///
 /// Just below the critical step, tissue that stiffens as it vibrates gains or loses energy in every cycle. The
 /// controller is therefore cautious for some steps after signs of fast change: steps are shorter, plans have few steps,
@@ -74,11 +74,7 @@ public:
   /// these.
   void displacements_set(double measured);
   /// Sets the bound at rest [1/s2], which changes when effects are switched.
-  void set_bound_at_rest(double squared)
-  {
-    bound_at_rest_ = squared;
-    state_.assembled.discard();
-  }
+  void set_bound_at_rest(double squared);
   /// Searches for the highest frequency of the assembled model if this is due (AssembledEstimate::renew()).
   void renew_assembled(const std::vector<float>& activation, bool moving, const AssembledEstimate::Search& search,
                        bool closely = false);
@@ -89,11 +85,8 @@ public:
 
 private:
   double critical_step(double share) const;  ///< this fraction of the critical step [s]
-  /// Squared frequency that is covered at a measure [1/s2], the part of it that is not measured, and the estimate.
-  double covered(double measured) const;
-  double not_measured() const;
-  double frequency_squared(double measured) const;
-  double measured_at_rest() const { return assembled_ ? 0 : bound_at_rest_; }
+  double covered(double measured) const;     ///< squared frequency for which steps are chosen at a measure [1/s2]
+  double measured_at_rest() const { return state_.assembled.known() ? 0 : bound_at_rest_; }
 
   double bound_at_rest_, safety_share_, fixed_step_;
   bool assembled_;
