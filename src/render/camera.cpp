@@ -15,7 +15,8 @@ PinholeCamera camera_with(int width, int height, double field_of_view)
   if (width < 1 || height < 1 || width > largest || height > largest)
     throw Error(fmt::format("a camera of {} x {} pixels; sizes must be from 1 to {}", width, height, largest));
   if (!(field_of_view > 0) || !(field_of_view < half_turn))
-    throw Error(fmt::format("a field of view of {:g} rad; must be greater than 0 and less than pi", field_of_view));
+    throw Error(fmt::format("a field of view of {:g} degrees; must be greater than 0 and less than 180",
+                            field_of_view * 180 / half_turn));
   PinholeCamera camera;
   camera.width = width;
   camera.height = height;

@@ -1,6 +1,7 @@
 #include "frontalis/ros/face_node.hpp"
 
 #include "frontalis/error.hpp"
+#include "frontalis/model/effects.hpp"
 #include "frontalis/model/model_file.hpp"
 #include "frontalis/ros/model_source.hpp"
 #include "frontalis/runner/profile_report.hpp"
@@ -217,6 +218,8 @@ void FaceNode::on_frame(const Frame& frame, std::uint64_t face)
   const std::lock_guard<std::mutex> lock(frame_mutex_);
   if (face != present_face_)
     return;
+  if (frame.failed && !frame_.failed)
+    ROS_ERROR_STREAM(name_ << ": " << frame.failure << "; ~reset starts the face again");
   frame_ = frame;
   time_ = frame.time;
   has_frame_ = true;
@@ -355,6 +358,12 @@ void FaceNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status)
     status.add("wall time per step [us]", 1e6 * frame_.seconds_per_step);
   status.add("memory of the solver [MB]", static_cast<double>(frame_.solver_bytes) / 1e6);
   lock.unlock();
+  const EffectSet of_model = effects_of(running->model()), switched_on = running->effects();
+  std::vector<std::string> off;
+  for (const Effect effect : every_effect())
+    if (of_model.has(effect) && !switched_on.has(effect))
+      off.push_back(name_of(effect));
+  status.add("effects switched off", off.empty() ? "none" : fmt::format("{}", fmt::join(off, ", ")));
   inputs_.diagnose(status);
 }
 

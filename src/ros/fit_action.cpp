@@ -17,7 +17,8 @@ namespace
 {
 
 constexpr double millimetres = 1e3;
-constexpr double farthest = 1e3;  // largest coordinate of a target [m]
+// Largest coordinates of a target [m]: what is larger is probably in millimetres.
+constexpr double farthest = 0.1, farthest_place = 1;
 
 void check_length(const std::string& field, std::size_t found, std::size_t wanted, const std::string& of)
 {
@@ -31,6 +32,7 @@ std::string request_of(const FitActivationGoal& goal)
   check_length("target", goal.target.size(), goal.landmark.size(), "landmark");
   std::set<std::string> named;
   bool any = false;
+  const double most = goal.place ? farthest_place : farthest;
   for (std::size_t l = 0; l < goal.landmark.size(); ++l)
   {
     if (!named.insert(goal.landmark[l]).second)
@@ -38,9 +40,9 @@ std::string request_of(const FitActivationGoal& goal)
     for (const double x : { goal.target[l].x, goal.target[l].y, goal.target[l].z })
     {
       any = any || !std::isnan(x);
-      if (std::isfinite(x) && std::abs(x) > farthest)
-        throw Error(fmt::format("target of landmark '{}': found {} m; allowed are -{} to {} m", goal.landmark[l], x,
-                                farthest, farthest));
+      if (std::isfinite(x) && std::abs(x) > most)
+        throw Error(fmt::format("target of landmark '{}': found {} m; allowed are -{} to {} m (targets are in metres)",
+                                goal.landmark[l], x, most, most));
     }
   }
   if (!any)
@@ -68,6 +70,12 @@ std::string request_of(const FitActivationGoal& goal)
   if (!goal.unknown.empty())
   {
     const bool limited = !goal.lower.empty() || !goal.upper.empty();
+    const auto bone = std::find_if(goal.unknown.begin(), goal.unknown.end(),
+                                   [](const std::string& name) { return name.find('.') != std::string::npos; });
+    if (bone != goal.unknown.end() && goal.apply)
+      throw Error("apply: a face takes muscles only, but the unknown '" + *bone + "' is a motion of a bone");
+    if (bone != goal.unknown.end() && !limited)
+      throw Error("unknown '" + *bone + "': a motion of a bone needs limits, in 'lower' and 'upper'");
     if (limited)
     {
       check_length("lower", goal.lower.size(), goal.unknown.size(), "unknown");

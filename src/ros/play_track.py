@@ -46,6 +46,8 @@ def main():
     face = arguments[1] if len(arguments) == 2 else "face"
     publisher = rospy.Publisher(face + "/joint_trajectory", JointTrajectory, queue_size=1)
     for _ in range(10 * CONNECTION_TIMEOUT):
+        if rospy.is_shutdown():
+            sys.exit(1)
         if publisher.get_num_connections() > 0:
             break
         rospy.rostime.wallsleep(0.1)

@@ -17,6 +17,8 @@ from std_msgs.msg import String
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 MOVING = ("prismatic", "revolute", "continuous")
+LONGEST_WAIT = 60  # longest time until a trajectory begins [s]
+STAMP_TOLERANCE = 1  # longest time since its end [s]
 
 
 def dot(a, b):
@@ -106,6 +108,12 @@ class Controller:
                 return "there is no joint '%s'; the joints are %s" % (name, ", ".join(self.by_name))
         if len(set(message.joint_names)) < len(message.joint_names):
             return "a joint is named twice"
+        now = rospy.Time.now().to_sec()
+        begin = message.header.stamp.to_sec() or now
+        if begin > now + LONGEST_WAIT:
+            return "it begins in %.3g s; allowed are %g s" % (begin - now, LONGEST_WAIT)
+        if message.points and begin + message.points[-1].time_from_start.to_sec() < now - STAMP_TOLERANCE:
+            return "it ended %.3g s ago" % (now - begin - message.points[-1].time_from_start.to_sec())
         before = -1.0
         for point in message.points:
             time = point.time_from_start.to_sec()

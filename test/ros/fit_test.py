@@ -66,6 +66,9 @@ class Fit(unittest.TestCase):
             ({"landmark": ["tip"], "target": [Vector3()], "unknown": ["a: [1"]}, "a: [1"),
             ({"landmark": ["tip"], "target": [Vector3()], "unknown": ["lift"], "lower": [0], "upper": []}, "upper"),
             ({"landmark": ["tip"], "target": [Vector3()], "deviation": -1}, "deviation"),
+            ({"landmark": ["tip"], "target": [Vector3(0, 0, 6)]}, "targets are in metres"),
+            ({"landmark": ["tip"], "target": [Vector3()], "unknown": ["jaw.x"]}, "needs limits"),
+            ({"landmark": ["tip"], "target": [Vector3()], "unknown": ["jaw.x"], "lower": [0], "upper": [1], "apply": True}, "muscles only"),
         ):
             self.send(**fields)
             self.assertEqual(self.outcome(), GoalStatus.ABORTED, fault)

@@ -45,9 +45,12 @@ class Robot(unittest.TestCase):
         """How far a landmark has moved from rest [m] along an axis: 0 forward, 1 left, 2 up."""
         return self.face.place(landmark)[axis] - self.rest[landmark][axis]
 
-    def send(self, joint, position, seconds=0.1):
+    def send(self, joint, position, seconds=0.1, begins_in=None):
         point = JointTrajectoryPoint(positions=[position], time_from_start=rospy.Duration(seconds))
-        self.command.publish(JointTrajectory(joint_names=[joint], points=[point]))
+        trajectory = JointTrajectory(joint_names=[joint], points=[point])
+        if begins_in is not None:
+            trajectory.header.stamp = rospy.Time.now() + rospy.Duration(begins_in)
+        self.command.publish(trajectory)
 
     def step_until(self, condition, what):
         def holds():
@@ -78,6 +81,8 @@ class Robot(unittest.TestCase):
         # trajectories with faults move nothing
         for joint, position in (("nose", 0), (BROW, 0.1), (BROW, float("nan"))):
             self.send(joint, position)
+        for begins_in in (-100, 1000):
+            self.send(BROW, 0, begins_in=begins_in)
         self.send("upper_lip_lift", 0.001)
         wait(lambda: self.joints["upper_lip_lift"][0] == 0.001, "a good trajectory after bad ones")
         self.assertEqual(self.joints[BROW][0], LIFT)

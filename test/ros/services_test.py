@@ -81,6 +81,7 @@ class Services(unittest.TestCase):
         off = self.face.switch_effect("contraction", False)
         self.assertTrue(off.success, off.message)
         self.assertEqual(dict(zip(off.name, off.running))["contraction"], False)
+        wait(lambda: self.face.diagnostic("effects switched off") == "contraction", "the diagnostics")
         self.face.command(lift=0.75)
         wait(lambda: self.face.target() == {"lift": 0.75}, "the command")
         self.assertTrue(self.face.step(0.3).success)
