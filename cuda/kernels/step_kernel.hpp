@@ -127,7 +127,8 @@ struct StepArguments : physics::Kick<float>
   /// displacement [m] and inverse mass [1/kg], 0 for nodes that never move; u[first] has the present values
   float4* u[2];
   float* v[3];  ///< velocity [m/s]
-  /// inverse mass for the frequency bound [1/kg], 0 for held nodes; null: the inverse mass in u
+  /// inverse mass for the frequency bound, or less (StepBackend::measure_growth) [1/kg], 0 for held nodes; null: the
+  /// inverse mass in u
   const float* mobility;
   std::int32_t first;
 

@@ -157,7 +157,7 @@ void add_faces_command(CLI::App& app)
   command->add_option("--pictures", options->pictures,
                       "write a contact sheet to faces.png in this folder (needs gnuplot)");
   add_positive(*command, "--columns", options->columns, "of the contact sheet (6)");
-  add_view_options(*command, options->view);
+  add_view_options(*command, command->get_option("--pictures"), options->view);
   add_solver_options(*command, options->settings.solver);
   add_scene_options(*command, options->source);
   command->callback([options] { measure_faces(*options); });

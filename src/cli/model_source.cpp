@@ -84,6 +84,8 @@ void keep_in_cache(const Model& model, const std::string& path, std::string& tol
 
 std::string table_of(const std::vector<BakeReport::SurfaceExtent>& surfaces)
 {
+  if (surfaces.empty())
+    return {};
   std::string table = fmt::format("surface  {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>9} {:>8}\n", "x from", "to mm",
                                   "y from", "to mm", "z from", "to mm", "triangles", "cm3");
   for (const BakeReport::SurfaceExtent& surface : surfaces)

@@ -27,25 +27,26 @@ std::string shell_word(const std::string& text)
 
 }  // namespace
 
-void add_view_options(CLI::App& command, PortraitView& view)
+void add_view_options(CLI::App& command, CLI::Option* pictures, PortraitView& view)
 {
-  std::map<std::string, double> azimuths(PortraitView::azimuths().begin(), PortraitView::azimuths().end());
+  const std::map<std::string, double> azimuths(PortraitView::azimuths().begin(), PortraitView::azimuths().end());
   command
       .add_option_function<std::string>(
           "--view", [&view, azimuths](const std::string& name) { view.azimuth = azimuths.at(name); },
-          "from where pictures show the face (oblique, a little from the subject's left); in 'front' the subject's "
-          "left "
-          "is at the right")
-      ->check(CLI::IsMember(azimuths));
+          "from where pictures show the face (oblique); in 'front' the subject's left is at the right")
+      ->check(CLI::IsMember(azimuths))
+      ->needs(pictures);
   command.add_option("--picture-height", view.height, fmt::format("height of pictures in pixels ({})", view.height))
-      ->check(CLI::Range(64, 4096));
+      ->check(CLI::Range(64, 4096))
+      ->needs(pictures);
 }
 
 void add_movie_options(CLI::App& command, MovieOptions& options)
 {
-  command.add_option("--movie", options.path,
-                     "FILE.gif, drawn without a display and joined by ImageMagick, or a folder for frame_NNNN.png");
-  add_view_options(command, options.view);
+  CLI::Option* const movie =
+      command.add_option("--movie", options.path,
+                         "FILE.gif, drawn without a display and joined by ImageMagick, or a folder for frame_NNNN.png");
+  add_view_options(command, movie, options.view);
 }
 
 Movie::Movie(const MovieOptions& options, double frame_rate, const Model& model)

@@ -18,15 +18,15 @@ struct MovieOptions
 
 /// Declares --movie, --view and --picture-height.
 void add_movie_options(CLI::App& command, MovieOptions& options);
-/// Declares --view and --picture-height.
-void add_view_options(CLI::App& command, PortraitView& view);
+/// Declares --view and --picture-height, which are refused without the option `pictures`.
+void add_view_options(CLI::App& command, CLI::Option* pictures, PortraitView& view);
 
 /// Draws the frames of a motion, without a display, and joins them to an animated GIF.
 class Movie
 {
 public:
-  /// Path: a file that ends in .gif, or a folder that receives frame_NNNN.png. The model must outlive this object.
-  /// Throws Error if the folder of the frames cannot be made, or ImageMagick, which joins them, is missing.
+  /// `options.path`: a file that ends in .gif, or a folder that receives frame_NNNN.png. The model must outlive this
+  /// object. Throws Error if the folder of the frames cannot be made, or ImageMagick, which joins them, is missing.
   Movie(const MovieOptions& options, double frame_rate, const Model& model);
 
   /// Draws an image of the skin, which is in the coordinates of the face frame. The first call must show the face at

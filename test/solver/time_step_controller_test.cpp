@@ -292,4 +292,11 @@ TEST(TimeStepController, follows_the_growth_since_a_search_where_the_assembled_m
   EXPECT_NEAR(controller.safe_step(), 0.9 * critical / std::sqrt(0.088), 1e-9 * critical) << "the model is steady";
   controller.set_bound_at_rest(2 * rest);
   EXPECT_DOUBLE_EQ(controller.safe_step(), 0.9 * critical / std::sqrt(2.0)) << "effects were switched";
+  for (const double bad : { HUGE_VAL, std::nan(""), 0.0 })
+  {
+    controller.reset();
+    controller.renew_assembled({}, false, [&](const auto&) { return bad; });
+    EXPECT_LE(controller.safe_step(), 0.9 * critical / std::sqrt(2.0)) << bad;
+    EXPECT_GE(controller.safe_step(), 0.9 * critical / std::sqrt(2.2)) << bad;
+  }
 }

@@ -50,7 +50,7 @@ struct BakeReport
     std::size_t triangles = 0;
     double volume = 0;  ///< that it encloses [m3]; 0: it is open
   };
-  std::vector<SurfaceExtent> surfaces;
+  std::vector<SurfaceExtent> surfaces;  ///< in the scene's order; empty if one is refused
   std::vector<Stage> stages;
   std::vector<MuscleForce> forces;
   std::vector<MuscleVolume> muscles;  ///< muscles bounded by surfaces; filled if `measure_muscles` is set

@@ -15,8 +15,8 @@ struct PortraitView
   double azimuth = 0.28;  ///< from straight ahead to the subject's left [rad]
   int height = 380;       ///< [pixels]
 
-  int width() const { return height * 15 / 19; }
-  /// A view by name: front, oblique (a little from the subject's left), left and right (the subject's).
+  int width() const { return height * 15 / 19; }  ///< [pixels]
+  /// Names and azimuths of views: front, oblique (a little from the subject's left), left and right (the subject's).
   static const std::vector<std::pair<std::string, double>>& azimuths();
 };
 

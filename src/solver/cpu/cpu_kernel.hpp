@@ -25,7 +25,7 @@ struct CpuKernelArguments : physics::Kick<Real>
   Real* v[3];                 ///< velocities [m/s]
   Real* rounding[3];          ///< rounding errors of the displacements [m]; null without compensated precision
   const float* inverse_mass;  ///< [1/kg]
-  const float* mobility;      ///< inverse mass for the bound of the frequency, 0 for held nodes [1/kg]
+  const float* mobility;      ///< for the bound of the frequency: inverse mass, or less, 0 for held nodes [1/kg]
   const Tile* tiles;
   const std::int32_t* plane_tiles;
   const std::int32_t* plane_nodes;

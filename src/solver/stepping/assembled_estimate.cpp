@@ -10,7 +10,8 @@ namespace
 
 // Margins are needed, because the search finds too low an eigenvalue, and the model may stiffen until the next search.
 constexpr double frequency_margin = 1.1;  // factor on the squared frequency
-// Largest relative changes of what is found, and of what is covered, between successive searches of a steady model.
+// Largest relative change of what is found between successive searches of a steady model, and share by which what is
+// measured may exceed the estimate.
 constexpr double steady_change = 0.03;
 // Numbers of steps between searches. A search takes as long as 10 to 40 steps. After a change of activations or while
 // bones move, the tissue stiffens as it follows: the next search is then after `shortest_time`, as far as the limits of

@@ -25,9 +25,10 @@ public:
   using Search = std::function<double(const std::vector<float>& activation)>;
 
   bool known() const { return found_ > 0; }
-  /// What the latest search found, with its margin, or what backends measure since, if that is more.
+  /// What the latest search found, with its margin, or what backends measure since, with a tenth for what the search
+  /// may have missed, if that is more.
   double covered(double measured) const;
-  double latest() const { return latest_; }    ///< what the latest search found, without margin
+  double latest() const { return latest_; }    ///< what the latest search returned, without margin
   double softest() const { return softest_; }  ///< the least that a search has found, with its margin
   /// Whether tissue may still be stiffening after a change of activations or poses.
   bool in_motion() const;

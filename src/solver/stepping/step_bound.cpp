@@ -77,8 +77,8 @@ void limit_mobility(const Discretisation& discretisation, IndexRange nodes, cons
 {
   const std::vector<double>& mass = masses_for_bound(discretisation);
   for (auto n = nodes.first; n < nodes.last; ++n)
-    if (mobility[n] > 0)
-      mobility[n] = static_cast<float>(std::min(1 / mass[n], found / sum[n]));
+    if (const double limit = found / sum[n]; mobility[n] > 0)
+      mobility[n] = static_cast<float>(limit > 0 ? std::min(1 / mass[n], limit) : 1 / mass[n]);
 }
 
 }  // namespace frontalis

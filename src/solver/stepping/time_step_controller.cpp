@@ -135,7 +135,10 @@ void TimeStepController::renew_assembled(const std::vector<float>& activation, b
                                          const AssembledEstimate::Search& search, bool closely)
 {
   if (state_.assembled.renew(activation, moving, state_.latest_measured, bound_at_rest_, search, closely))
-    state_.measured = state_.latest_measured = state_.assembled.latest();
+  {
+    const double found = state_.assembled.latest();
+    state_.measured = state_.latest_measured = found > 0 && std::isfinite(found) ? found : bound_at_rest_;
+  }
 }
 
 bool TimeStepController::muscles_switched(const std::vector<float>& from, const std::vector<float>& to)
