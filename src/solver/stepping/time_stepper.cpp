@@ -204,8 +204,7 @@ void TimeStepper::renew_assembled_estimate(const Controls& asked)
   const bool moving = !same_poses(asked.bone, motion_.controls.bone);
   if (moving || most != motion_.activation)
     motion_.changed = motion_.time;
-  // Tissue that swings on distorts voxels. If these got mass, others are as close to the limit, and the bound at nodes
-  // does not tell of them.
+  // Tissue that swings on distorts voxels. If these got mass, others are as close to the limit.
   const bool swings = !motion_.added.empty() && motion_.time - motion_.changed < swinging;
   controller_.renew_assembled(most, moving || swings, search, !motion_.added.empty());
 }
