@@ -293,6 +293,19 @@ TEST_P(LiveEffects, what_is_made_on_request_is_listed_from_then_on)
             6 * 4 * sizeof(float) * model->nodes.size());
 }
 
+TEST_P(LiveEffects, SwitchedFibresEndTheMeasureOfGrowth)
+{
+  Model model = scene_of(everything);
+  model.time_step_estimate = TimeStepEstimate::assembled;
+  const auto moved = make(model, 0), set = make(model, 0);
+  go(*moved);
+  for (const auto* solver : { &moved, &set })
+    (*solver)->switch_effect(Effect::contraction, false);
+  set->set_displacements(displacements(*moved));
+  const double critical = set->monitor().critical_time_step;
+  EXPECT_NEAR(moved->monitor().critical_time_step, critical, 1e-3 * critical);
+}
+
 FRONTALIS_EVERY_BACKEND(LiveEffects);
 
 }  // namespace

@@ -118,9 +118,6 @@ void TimeStepper::set_velocities(const NodalVectors& in)
 
 void TimeStepper::displacements_were_set()
 {
-  // Until the next search, steps follow the bound itself.
-  if (model_->time_step_estimate == TimeStepEstimate::assembled)
-    backend_->measure_growth(std::numeric_limits<double>::infinity());
   const double critical = backend_->monitor().critical_time_step;
   motion_.latest_step = 0;
   controller_.displacements_set(4 / (critical * critical));
@@ -331,10 +328,15 @@ void TimeStepper::effects_switched(const std::vector<Effect>& effects)
     ledger_->effects_switched();
   if (motion_.diverged)
     return;
-  if (std::any_of(effects.begin(), effects.end(), is_of_fibres))
-    displacements_were_set();
-  else
+  if (std::none_of(effects.begin(), effects.end(), is_of_fibres))
+  {
     open_ledger();
+    return;
+  }
+  // Until the next search, steps follow the bound itself.
+  if (model_->time_step_estimate == TimeStepEstimate::assembled)
+    backend_->measure_growth(std::numeric_limits<double>::infinity());
+  displacements_were_set();
 }
 
 std::vector<Allocation> TimeStepper::allocations() const
