@@ -229,7 +229,7 @@ TEST_P(ShellBackend, the_bound_of_the_time_step_includes_the_film)
     model.time_step_estimate = estimate;
     const auto solver = make(model);
     EXPECT_LT(solver->time_step(), 0.5 * make(plain)->time_step());
-    solver->set_velocities(disturbance(model, 1e-3));
+    solver->set_velocities(disturbance(model, 1e-2));
     for (int k = 0; k < 10; ++k)
       solver->advance(0.2e-3, solver->controls());
     const EnergyLedger ledger = solver->ledger();

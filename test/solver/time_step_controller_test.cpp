@@ -289,6 +289,10 @@ TEST(TimeStepController, follows_the_growth_since_a_search_where_the_assembled_m
     controller.observe(0, 0, 10);
   EXPECT_NEAR(controller.safe_step(), 0.9 * critical / std::sqrt(0.143), 1e-9 * critical) << "until the next search";
   controller.renew_assembled({}, false, [](const auto&) { return 0.08 * rest; });
+  EXPECT_NEAR(controller.safe_step(), 0.9 * critical / std::sqrt(0.1), 1e-9 * critical) << "it has shortened the step";
+  for (int plan = 0; plan < 30; ++plan)
+    controller.observe(0, 0, 10);
+  controller.renew_assembled({}, false, [](const auto&) { return 0.08 * rest; });
   EXPECT_NEAR(controller.safe_step(), 0.9 * critical / std::sqrt(0.088), 1e-9 * critical) << "the model is steady";
   controller.set_bound_at_rest(2 * rest);
   EXPECT_DOUBLE_EQ(controller.safe_step(), 0.9 * critical / std::sqrt(2.0)) << "effects were switched";

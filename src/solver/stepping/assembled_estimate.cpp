@@ -13,18 +13,18 @@ constexpr double frequency_margin = 1.1;  // factor on the squared frequency
 // Largest relative change of what is found between successive searches of a steady model, and share by which what is
 // measured may exceed the estimate.
 constexpr double steady_change = 0.03;
-// Numbers of steps between searches. A search takes as long as 10 to 40 steps. After a change of activations or while
-// bones move, the tissue stiffens as it follows: the next search is then after `shortest_time`, as far as the limits of
-// steps allow it, and each further one after twice as many steps, or after `longest_valid` if the model is steady.
-constexpr double shortest_time = 0.02;  // [s]
-constexpr std::int64_t fewest_valid = 50, shortest_valid = 200, longest_valid = 2000;
+// Numbers of steps between searches. After a change of activations or while bones move, the tissue stiffens as it
+// follows: the next search is then after `shortest_time`, as far as the limits of steps allow it, and each further one
+// after twice as many steps, or after `longest_valid` if the model is steady.
+constexpr double shortest_time = 0.03;  // [s]
+constexpr std::int64_t fewest_valid = 75, shortest_valid = 300, longest_valid = 2000;
+// A search takes as long as 10 to 40 steps. One is made when the steps that growth made necessary have cost as much:
+// what was measured as growth, the bound's, is often not the model's.
+constexpr double search_cost = 20;
 // The ratio is found for activations that are higher by this much than the present ones, so that searches are few while
 // activations grow.
 constexpr float activation_ahead = 0.5F;
 constexpr float activation_tolerance = 0.02F;  // replaces `activation_ahead` where activations rest
-// A search is made if what the estimate covers has grown by this factor, because the bound grows more than the model.
-constexpr double growth_allowed = 1.25;
-constexpr std::int64_t steps_until_growth_counts = 25;
 // The estimate falls by at most this factor per search. A search may meet vibrating tissue in a moment in which it is
 // soft, and the tissue stiffens again within a few dozen steps.
 constexpr double slowest_fall = 0.7;
@@ -41,16 +41,23 @@ double AssembledEstimate::covered(double measured) const { return std::max(found
 
 bool AssembledEstimate::in_motion() const { return known() && steps_valid_ < longest_valid; }
 
+void AssembledEstimate::steps_taken(int steps, double covered)
+{
+  steps_ += steps;
+  if (covered > found_)
+    steps_lost_ += steps * (1 - std::sqrt(found_ / covered));
+}
+
 bool AssembledEstimate::renew(const std::vector<float>& activation, bool moving, double measured, double most,
-                              const Search& search, bool closely)
+                              const Search& search)
 {
   activation_.resize(activation.size());
   bool activated = false;
   for (std::size_t m = 0; m < activation.size(); ++m)
     activated = activated || activation[m] > activation_[m];
   if (moving)
-    steps_valid_ = std::min(steps_valid_, std::max(fewest_valid, steps_in_motion(found_) / (closely ? 2 : 1)));
-  const bool grown = known() && covered(measured) > growth_allowed * found_ && steps_ >= steps_until_growth_counts;
+    steps_valid_ = std::min(steps_valid_, steps_in_motion(found_));
+  const bool grown = known() && steps_lost_ > search_cost;
   if (known() && !activated && !grown && steps_ < steps_valid_)
     return false;
   // A search after growth keeps the activations, because they may be on their way to those.
@@ -75,6 +82,7 @@ bool AssembledEstimate::renew(const std::vector<float>& activation, bool moving,
   }
   softest_ = softest_ > 0 ? std::min(softest_, found_) : found_;
   steps_ = 0;
+  steps_lost_ = 0;
   return true;
 }
 

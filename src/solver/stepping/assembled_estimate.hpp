@@ -34,16 +34,15 @@ public:
   bool in_motion() const;
   /// Number of steps until the next search is due, at least 1.
   std::int64_t steps_left() const { return std::max<std::int64_t>(steps_valid_ - steps_, 1); }
-  void steps_taken(int steps) { steps_ += steps; }
+  /// Counts steps that were as long as `covered` allowed [1/s2].
+  void steps_taken(int steps, double covered);
   /// Searches if this is due, and says whether it did. `activation`: the largest activations until the next call.
   /// `moving`: whether bones move, so that tissue stiffens where no muscle acts. `measured`: at present. `most`: bound
-  /// at rest, the estimate if the search finds no number. `closely`: whether voxels are so close to the limit that
-  /// tissue in motion needs twice as many searches.
-  bool renew(const std::vector<float>& activation, bool moving, double measured, double most, const Search& search,
-             bool closely = false);
+  /// at rest, the estimate if the search finds no number.
+  bool renew(const std::vector<float>& activation, bool moving, double measured, double most, const Search& search);
   /// Forgets what was found. Call it when displacements were set from outside.
   void discard();
-  void archive(ByteArchive& archive) { archive(found_)(softest_)(latest_)(steps_)(steps_valid_)(activation_); }
+  void archive(ByteArchive& archive) { archive(found_)(softest_)(latest_)(steps_)(steps_valid_)(steps_lost_)(activation_); }
 
 private:
   double found_ = 0;               // [1/s2]; 0: unknown
@@ -51,6 +50,7 @@ private:
   double latest_ = 0;              // what the latest search found [1/s2]
   std::int64_t steps_ = 0;         // steps since the latest search
   std::int64_t steps_valid_ = 0;   // number of steps for which it is valid
+  double steps_lost_ = 0;          // number of steps made since, less that of steps as long as the estimate allows
   std::vector<float> activation_;  // of the latest search
 };
 

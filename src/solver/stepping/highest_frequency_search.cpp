@@ -16,7 +16,7 @@ namespace
 
 // The eigenvalue has settled after at least `fewest_rows` if the last two rows raised it by less than `tolerance`.
 constexpr std::size_t fewest_rows = 8;
-constexpr double tolerance = 2e-3;
+constexpr double tolerance = 0.01;
 // The iteration ends where a vector's image lies along itself and the vector before, but for rounding.
 constexpr double smallest_remainder = 1e-6;
 

@@ -115,6 +115,7 @@ TimeStepController::Choice TimeStepController::choose(double remaining, double l
 void TimeStepController::observe(double measured, double speed, int steps)
 {
   state_.speed = speed;
+  state_.assembled.steps_taken(steps, covered(state_.measured));
   const double now = covered(measured),
                at_rest = state_.assembled.known() ? state_.assembled.softest() : bound_at_rest_;
   const bool changes = std::abs(now - state_.latest_covered) > vibration_change * state_.latest_covered;
@@ -128,13 +129,12 @@ void TimeStepController::observe(double measured, double speed, int steps)
   if (!mutation::time_step_of_rest)
     state_.measured = std::max({ measured, softened, measured_at_rest() });
   state_.latest_measured = measured;
-  state_.assembled.steps_taken(steps);
 }
 
 void TimeStepController::renew_assembled(const std::vector<float>& activation, bool moving,
-                                         const AssembledEstimate::Search& search, bool closely)
+                                         const AssembledEstimate::Search& search)
 {
-  if (state_.assembled.renew(activation, moving, state_.latest_measured, bound_at_rest_, search, closely))
+  if (state_.assembled.renew(activation, moving, state_.latest_measured, bound_at_rest_, search))
   {
     const double found = state_.assembled.latest();
     state_.measured = state_.latest_measured = found > 0 && std::isfinite(found) ? found : bound_at_rest_;

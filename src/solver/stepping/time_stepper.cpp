@@ -203,7 +203,7 @@ void TimeStepper::renew_assembled_estimate(const Controls& asked)
     motion_.changed = motion_.time;
   // Tissue that swings on distorts voxels. If these got mass, others are as close to the limit.
   const bool swings = !motion_.added.empty() && motion_.time - motion_.changed < swinging;
-  controller_.renew_assembled(most, moving || swings, search, !motion_.added.empty());
+  controller_.renew_assembled(most, moving || swings, search);
 }
 
 // Makes a plan that ends with the controls `next`, and advances the muscles' activations to its end.
