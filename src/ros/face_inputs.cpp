@@ -1,6 +1,7 @@
 #include "frontalis/ros/face_inputs.hpp"
 
 #include "frontalis/error.hpp"
+#include "frontalis/suggestion.hpp"
 
 #include <fmt/format.h>
 #include <ros/console.h>
@@ -38,7 +39,7 @@ void FaceInputs::start(const std::shared_ptr<const Model>& model, const InputPar
   for (const BoneFrame& followed : parameters.bone_frames)
     if (std::find(model->bones.begin(), model->bones.end(), followed.bone) == model->bones.end())
       throw Error(fmt::format("~bone_frames: no bone is called '{}'; the bones are {}", followed.bone,
-                              model->bones.empty() ? "none" : fmt::format("{}", fmt::join(model->bones, ", "))));
+                              list_with_suggestion(followed.bone, model->bones)));
   auto follower = std::make_unique<BoneFollower>(parameters.bone_frames, face_frame, parameters.bone_speed,
                                                  parameters.stamp_tolerance);
   auto demo = std::make_unique<DemoPlayer>(model);

@@ -2,6 +2,7 @@
 
 #include "frontalis/error.hpp"
 #include "frontalis/solver/rigid_motion.hpp"
+#include "frontalis/suggestion.hpp"
 
 #include <boost/algorithm/string/predicate.hpp>
 #include <fmt/format.h>
@@ -21,11 +22,6 @@ std::vector<std::string> names_of(const std::vector<Named>& all)
   for (const Named& named : all)
     names.push_back(named.name);
   return names;
-}
-
-std::string listed(const std::vector<std::string>& names)
-{
-  return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
 }
 
 std::size_t index_of(const std::vector<std::string>& names, const std::string& name)
@@ -105,15 +101,15 @@ void set_activations(const Model& model, const std::map<std::string, double>& na
   {
     const std::size_t muscle = index_of(muscles, name);
     if (muscle == muscles.size())
-      unknown.push_back("'" + name + "'");
+      unknown.push_back("'" + name + "'" + suggestion(name, muscles));
     else if (!(value >= 0 && value <= 1))
       faults.push_back(fmt::format("activation of '{}' is {}; must be from 0 to 1", name, value));
     else
       changed[muscle] = static_cast<float>(value);
   }
   if (!unknown.empty())
-    faults.insert(faults.begin(),
-                  fmt::format("no muscle is called {}; the muscles are {}", fmt::join(unknown, ", "), listed(muscles)));
+    faults.insert(faults.begin(), fmt::format("no muscle is called {}; the muscles are {}", fmt::join(unknown, ", "),
+                                              list_with_suggestion("", muscles)));
   if (!faults.empty())
     throw Error(fmt::format("{}", fmt::join(faults, "; ")));
   activation = changed;
@@ -131,7 +127,8 @@ Controls expression_controls(const Model& model, const std::string& name)
 {
   Controls controls = rest_controls(model);
   if (name != "relax" && !add_pose(model, model.expressions, name, 1, controls))
-    throw Error("no expression is called '" + name + "'; there is relax, " + listed(names_of(model.expressions)));
+    throw Error("no expression is called '" + name + "'; there is relax, " +
+                list_with_suggestion(name, names_of(model.expressions)));
   return limited(controls);
 }
 
@@ -145,7 +142,8 @@ Controls action_unit_controls(const Model& model, const std::map<std::string, do
     const auto [unit, share] = without_letter(name);
     if (!add_pose(model, model.action_units, name, intensity, controls) &&
         !add_pose(model, model.action_units, unit, share * intensity, controls))
-      throw Error("no action unit is called '" + name + "'; there is " + listed(names_of(model.action_units)));
+      throw Error("no action unit is called '" + name + "'; there is " +
+                  list_with_suggestion(name, names_of(model.action_units)));
   }
   return limited(controls);
 }
@@ -191,7 +189,7 @@ void set_bone_motion(const Model& model, const std::string& name, const RigidTra
 {
   const std::size_t bone = index_of(model.bones, name);
   if (bone == model.bones.size())
-    throw Error("no bone is called '" + name + "'; the bones are " + listed(model.bones));
+    throw Error("no bone is called '" + name + "'; the bones are " + list_with_suggestion(name, model.bones));
   if (!is_rigid_motion(motion))
     throw Error("motion of bone '" + name + "' must be finite and rigid: a rotation and a translation");
   bones[bone] = composed(inverse(model.to_face), composed(motion, model.to_face));

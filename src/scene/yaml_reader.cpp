@@ -3,9 +3,7 @@
 #include "frontalis/error.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <numeric>
 
 namespace frontalis
 {
@@ -26,45 +24,7 @@ bool contains(const std::vector<std::string>& texts, const std::string& text)
   return std::find(texts.begin(), texts.end(), text) != texts.end();
 }
 
-// Levenshtein distance, whatever the case: smallest number of letters to insert, delete or replace.
-std::size_t edit_distance(const std::string& a, const std::string& b)
-{
-  const auto lower = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{ 0 });
-  for (std::size_t i = 0; i < a.size(); ++i)
-  {
-    std::size_t diagonal = row[0];
-    row[0] = i + 1;
-    for (std::size_t j = 0; j < b.size(); ++j)
-    {
-      const std::size_t replaced = diagonal + (lower(a[i]) == lower(b[j]) ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({ replaced, row[j] + 1, row[j + 1] + 1 });
-    }
-  }
-  return row.back();
-}
-
 }  // namespace
-
-std::string suggestion(const std::string& word, const std::vector<std::string>& words)
-{
-  const std::string* closest = nullptr;
-  std::size_t least = std::max<std::size_t>(word.size() < 4 ? 1 : 2, word.size() / 3) + 1;
-  for (const std::string& candidate : words)
-    if (const std::size_t distance = edit_distance(word, candidate); distance < least)
-    {
-      least = distance;
-      closest = &candidate;
-    }
-  return closest == nullptr ? "" : " (did you mean '" + *closest + "'?)";
-}
-
-std::string list_with_suggestion(const std::string& word, const std::vector<std::string>& words)
-{
-  return words.empty() ? "none" : fmt::format("{}{}", fmt::join(words, ", "), suggestion(word, words));
-}
 
 void Faults::add(int line, const std::string& key, const std::string& fault)
 {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "frontalis/suggestion.hpp"
 #include "scene/quantity.hpp"
 
 #include <fmt/format.h>
@@ -13,11 +14,6 @@
 
 namespace frontalis
 {
-
-/// " (did you mean 'b'?)" if one of the words is close to `word`, whatever the case of letters; else an empty text.
-std::string suggestion(const std::string& word, const std::vector<std::string>& words);
-/// "a, b, c" with suggestion(); "none" without words.
-std::string list_with_suggestion(const std::string& word, const std::vector<std::string>& words);
 
 /// Faults of one file, collected so that a user sees all of them at once.
 class Faults

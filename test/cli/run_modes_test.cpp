@@ -106,7 +106,7 @@ TEST_F(RunModes, a_time_step_is_taken_or_refused)
 TEST_F(RunModes, wrong_tables_are_told_with_their_line)
 {
   const std::pair<const char*, const char*> tables[] = {
-    { "time,push\n0,1\n", ":1: no muscle is called 'push'; the muscles are pull" },
+    { "time,push\n0,1\n", ":1: no muscle is called 'push' (did you mean 'pull'?); the muscles are pull" },
     { "time,pull\n0,1\n0,1\n", ":3: time is 0; times must ascend from 0" },
     { "time,pull\n0.1,nan\n", ":2: found 'nan'; must be a number" },
     { "time,pull\n0.1,1.5\n", ":2: activation of 'pull' is 1.5; must be from 0 to 1" },

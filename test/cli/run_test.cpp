@@ -165,7 +165,8 @@ TEST_F(RunModel, unknown_muscles_and_expressions_are_told_with_those_that_exist)
 {
   ProgramResult result = run_program({ "run", model, "--activate", "pul=0.5,pull=0.1,push=1", "--frames", frames });
   EXPECT_EQ(result.code, 1);
-  EXPECT_EQ(result.errors, "no muscle is called 'pul', 'push'; the muscles are pull\n");
+  EXPECT_EQ(result.errors,
+            "no muscle is called 'pul' (did you mean 'pull'?), 'push' (did you mean 'pull'?); the muscles are pull\n");
   EXPECT_FALSE(std::filesystem::exists(frames));
   result = run_program({ "run", model, "--expression", "smile" });
   EXPECT_EQ(result.code, 1);

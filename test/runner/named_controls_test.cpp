@@ -119,6 +119,14 @@ TEST(NamedControls, wrong_ones_are_told_with_those_that_exist)
                 })
                 .find("must be from 0 to 1"),
             std::string::npos);
+  EXPECT_NE(told([&] { expression_controls(model, "Smile"); }).find("(did you mean 'smile'?)"), std::string::npos);
+  std::vector<float> activation = rest_controls(model).activation;
+  EXPECT_NE(told(
+                [&] {
+                  set_activations(model, { { "zygomaticus", 1 } }, activation);
+                })
+                .find("(did you mean 'zygomaticus_left' or 'zygomaticus_right'?)"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include "frontalis/error.hpp"
 #include "frontalis/study/table.hpp"
+#include "frontalis/suggestion.hpp"
 
 #include <fmt/format.h>
 
@@ -236,7 +237,7 @@ void AccuracyPlan::check() const
   const auto known = knob_names();
   for (const std::string& knob : knobs)
     if (std::find(known.begin(), known.end(), knob) == known.end())
-      throw Error(fmt::format("no knob is called '{}'; the knobs are {}", knob, fmt::join(known, ", ")));
+      throw Error(fmt::format("no knob is called '{}'; the knobs are {}", knob, list_with_suggestion(knob, known)));
   if (edges.size() < 3 || !std::is_sorted(edges.rbegin(), edges.rend()) ||
       std::adjacent_find(edges.begin(), edges.end()) != edges.end())
     throw Error(

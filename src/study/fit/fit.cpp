@@ -3,6 +3,7 @@
 #include "study/fit/landmark_fit.hpp"
 
 #include "frontalis/study/step_time.hpp"
+#include "frontalis/suggestion.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -27,8 +28,8 @@ std::size_t index_of_landmark(const Model& model, const std::string& name)
 {
   const auto found = std::find(model.landmarks.begin(), model.landmarks.end(), name);
   if (found == model.landmarks.end())
-    throw Error(
-        fmt::format("no landmark is called '{}'; the landmarks are {}", name, fmt::join(model.landmarks, ", ")));
+    throw Error(fmt::format("no landmark is called '{}'; the landmarks are {}", name,
+                            list_with_suggestion(name, model.landmarks)));
   return static_cast<std::size_t>(found - model.landmarks.begin());
 }
 
