@@ -231,6 +231,31 @@ TEST_P(LiveEffects, what_is_not_there_or_cannot_be_switched_is_refused)
             "friction needs sliding: switch friction off too, or sliding on");
 }
 
+TEST_P(LiveEffects, sliding_does_not_come_back_where_nodes_have_left_their_surface)
+{
+  const Model model = whole_scene();
+  const auto solver = make(model);
+  switch_live(*solver, Effect::sliding, false);
+  Vectors u = displacements(*solver);
+  for (const double share : { 0.2, 0.8 })
+  {
+    for (const SlidingNode& node : model.sliding)
+      u[node.node].fill(share * model.spacing[0]);
+    solver->set_displacements(u);
+    if (share < 0.5)
+    {
+      solver->switch_effect(Effect::sliding, true);
+      solver->switch_effect(Effect::sliding, false);
+    }
+    else
+      EXPECT_THROW(solver->switch_effect(Effect::sliding, true), Error);
+  }
+  EXPECT_FALSE(solver->effects().has(Effect::sliding));
+  solver->reset();
+  solver->switch_effect(Effect::sliding, true);
+  EXPECT_TRUE(solver->effects().has(Effect::sliding));
+}
+
 // A solver that is made without an effect has the same memory as for a model without the effect, whatever its other
 // effects.
 TEST_P(LiveEffects, an_effect_that_was_switched_off_holds_what_one_holds_that_never_was)

@@ -46,6 +46,20 @@ void find_nodes_past_rim(const Model& model, const NodalVectors& displacements,
   }
 }
 
+double farthest_from_level(const Model& model, const NodalVectors& displacements,
+                           const std::vector<RigidTransform>& bones)
+{
+  double farthest = 0;
+  for (const SlidingNode& node : model.sliding)
+  {
+    const SampledField& field = model.constraint_surfaces[node.surface].field;
+    const double off =
+        level_at(field, place_of(model, node, displacements, bones)) - level_at(field, rest_position(model, node.node));
+    farthest = std::max(farthest, std::abs(off));  // keeps the number if the other is NaN
+  }
+  return farthest;
+}
+
 double distance_from_rest(const Model& model, std::int32_t node, const NodalVectors& displacements,
                           const std::vector<RigidTransform>& bones)
 {

@@ -11,6 +11,11 @@ namespace frontalis
 void find_nodes_past_rim(const Model& model, const NodalVectors& displacements,
                          const std::vector<RigidTransform>& bones, Monitor& monitor);
 
+/// Largest distance [m] between the level of its surface at which a sliding node is and the one that it keeps. Nodes
+/// past the rim are left out.
+double farthest_from_level(const Model& model, const NodalVectors& displacements,
+                           const std::vector<RigidTransform>& bones);
+
 /// Distance [m] of a sliding node from the nearest rest position of a node that slides on the same surface, in the
 /// frame of the surface. If it is above usual_travel, the surface was not sampled there, whether it goes on or not.
 double distance_from_rest(const Model& model, std::int32_t node, const NodalVectors& displacements,

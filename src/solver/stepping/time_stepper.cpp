@@ -307,38 +307,6 @@ void TimeStepper::set_damping(double damping)
 
 void set_damping(Solver& solver, double damping) { dynamic_cast<TimeStepper&>(solver).set_damping(damping); }
 
-void TimeStepper::switch_effect(Effect effect, bool on)
-{
-  if (!effects_.change(effect, on))
-    return;
-  renew_conditions();
-  if (is_of_fibres(effect))
-  {
-    discretisation_.bound(effects_.running());
-    controller_.set_bound_at_rest(discretisation_.frequency_squared_max);
-  }
-  effects_switched({ effect });
-}
-
-// The discretisation's bounds must already be those of the running effects.
-void TimeStepper::effects_switched(const std::vector<Effect>& effects)
-{
-  backend_->effects_switched();
-  if (ledger_)
-    ledger_->effects_switched();
-  if (motion_.diverged)
-    return;
-  if (std::none_of(effects.begin(), effects.end(), is_of_fibres))
-  {
-    open_ledger();
-    return;
-  }
-  // Until the next search, steps follow the bound itself.
-  if (model_->time_step_estimate == TimeStepEstimate::assembled)
-    backend_->measure_growth(std::numeric_limits<double>::infinity());
-  displacements_were_set();
-}
-
 std::vector<Allocation> TimeStepper::allocations() const
 {
   ArrayList list;
