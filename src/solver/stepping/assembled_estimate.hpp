@@ -42,7 +42,10 @@ public:
   bool renew(const std::vector<float>& activation, bool moving, double measured, double most, const Search& search);
   /// Forgets what was found. Call it when displacements were set from outside.
   void discard();
-  void archive(ByteArchive& archive) { archive(found_)(softest_)(latest_)(steps_)(steps_valid_)(steps_lost_)(activation_); }
+  void archive(ByteArchive& archive)
+  {
+    archive(found_)(softest_)(latest_)(steps_)(steps_valid_)(steps_lost_)(activation_);
+  }
 
 private:
   double found_ = 0;               // [1/s2]; 0: unknown

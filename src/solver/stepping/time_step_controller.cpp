@@ -14,17 +14,23 @@ namespace
 {
 
 // These values are empirical: with them the hard cases of doc/stability.md pass.
-constexpr double cautious_share = 0.55;  // cautious steps: fraction of the critical step
-constexpr int cautious_plan = 8;         // number of steps in a cautious plan
-constexpr int vibration_plan = 32;       // largest number of steps in a plan while tissue vibrates
-constexpr int fast_plan = 16;            // and while it moves fast
+// Cautious steps: fraction of the critical step, and their number after signs of stiffening. What searches find already
+// has a margin while tissue moves.
+struct Caution
+{
+  double share;
+  int steps_after_stiffening;
+};
+constexpr Caution with_bound{ 0.55, 128 }, with_searches{ 0.62, 32 };
+constexpr int cautious_plan = 8;    // number of steps in a cautious plan
+constexpr int vibration_plan = 32;  // largest number of steps in a plan while tissue vibrates
+constexpr int fast_plan = 16;       // and while it moves fast
 // Longest path of a node in a step, in shortest voxel edges. Tissue that moves faster crushes voxels within a few
 // steps.
 constexpr double way_per_step = 0.15;
 constexpr double least_share = 0.1;  // of the step for that; what needs less is flung away, which the guard reports
 // The following constants define signs of fast change, and the number of cautious steps after each.
-constexpr double growth_between_plans = 1.1;  // ratio of covered squared frequencies of successive plans
-constexpr int steps_after_stiffening = 128;
+constexpr double growth_between_plans = 1.1;       // ratio of covered squared frequencies of successive plans
 constexpr float activation_change_allowed = 0.3F;  // change of a muscle's activation within a plan
 constexpr int steps_after_a_switch = 48;
 // After a jump of a bone's velocity: the shorter of the two.
@@ -69,6 +75,16 @@ double TimeStepController::critical_step_at(double measured) const { return 2 / 
 
 double TimeStepController::critical_step(double share) const { return share * critical_step_at(state_.measured); }
 
+double TimeStepController::cautious_step() const
+{
+  return critical_step((assembled_ ? with_searches : with_bound).share);
+}
+
+int TimeStepController::steps_after_stiffening() const
+{
+  return (assembled_ ? with_searches : with_bound).steps_after_stiffening;
+}
+
 double TimeStepController::safe_step() const
 {
   const double critical = critical_step(1);
@@ -96,7 +112,7 @@ TimeStepController::Choice TimeStepController::choose(double remaining, double l
   if (longest_plan < most_steps * dt)
     most_steps = std::max(1, static_cast<int>(longest_plan / dt));
   if (state_.cautious_steps_left > 0 || vibrates)
-    dt = std::min(dt, critical_step(slow_share_ * cautious_share));
+    dt = std::min(dt, slow_share_ * cautious_step());
   const bool cautious = state_.cautious_steps_left > 0 || longest <= dt;
   if (cautious)
     most_steps = std::max(1, static_cast<int>(std::min<double>(longest_plan / dt, cautious_plan)));
@@ -122,7 +138,7 @@ void TimeStepController::observe(double measured, double speed, int steps)
   const bool vibrates = changes && now > stiffening_ratio * at_rest;
   const bool stiffens = measured > alarming();
   state_.latest_covered = now;
-  state_.cautious_steps_left = std::max(stiffens ? steps_after_stiffening : 0, state_.cautious_steps_left - steps);
+  state_.cautious_steps_left = std::max(stiffens ? steps_after_stiffening() : 0, state_.cautious_steps_left - steps);
   state_.vibration_steps_left = std::max(vibrates ? steps_after_vibration : 0, state_.vibration_steps_left - steps);
   // The assembled estimate does not soften before the next search.
   const double softened = (assembled_ ? 1 : slowest_softening) * state_.measured;
@@ -154,7 +170,7 @@ bool TimeStepController::muscles_switched(const std::vector<float>& from, const 
 
 void TimeStepController::bone_jumped()
 {
-  const double steps = time_after_a_jump / critical_step(cautious_share);
+  const double steps = time_after_a_jump / cautious_step();
   state_.cautious_steps_left =
       std::max(state_.cautious_steps_left, static_cast<int>(std::min<double>(steps, steps_after_a_jump)));
 }
@@ -166,7 +182,7 @@ void TimeStepController::displacements_set(double measured)
   if (std::isfinite(measured))
     state_.measured = std::max(measured, measured_at_rest());
   state_.latest_measured = state_.measured;
-  state_.cautious_steps_left = steps_after_stiffening;
+  state_.cautious_steps_left = steps_after_stiffening();
 }
 
 void TimeStepController::set_bound_at_rest(double squared)

@@ -84,6 +84,8 @@ public:
 
 private:
   double critical_step(double share) const;  ///< this fraction of the critical step [s]
+  double cautious_step() const;              ///< [s]
+  int steps_after_stiffening() const;        ///< number of cautious steps
   double covered(double measured) const;     ///< squared frequency for which steps are chosen at a measure [1/s2]
   double measured_at_rest() const { return state_.assembled.known() ? 0 : bound_at_rest_; }
 
