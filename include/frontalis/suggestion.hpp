@@ -36,6 +36,8 @@ inline std::size_t edit_distance(const std::string& a, const std::string& b)
 /// two are `word` with "_left" and "_right"; else an empty text.
 inline std::string suggestion(const std::string& word, const std::vector<std::string>& words)
 {
+  if (word.empty())
+    return {};
   const auto is_word = [&words](const std::string& other)
   { return std::find(words.begin(), words.end(), other) != words.end(); };
   if (is_word(word + "_left") && is_word(word + "_right"))

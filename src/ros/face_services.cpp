@@ -201,7 +201,14 @@ void FaceNode::on_config(FaceConfig& config, std::uint32_t)
     ROS_WARN_STREAM(name_ << ": configuration refused: " << error.what());
     // Applying the old configuration undoes the changes made before the fault was found.
     config = config_;
-    apply_config(*running, config_);
+    try
+    {
+      apply_config(*running, config_);
+    }
+    catch (const Error& again)
+    {
+      ROS_WARN_STREAM(name_ << ": the configuration before could not be restored whole: " << again.what());
+    }
   }
 }
 

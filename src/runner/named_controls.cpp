@@ -127,8 +127,11 @@ Controls expression_controls(const Model& model, const std::string& name)
 {
   Controls controls = rest_controls(model);
   if (name != "relax" && !add_pose(model, model.expressions, name, 1, controls))
-    throw Error("no expression is called '" + name + "'; there is relax, " +
-                list_with_suggestion(name, names_of(model.expressions)));
+  {
+    std::vector<std::string> known = names_of(model.expressions);
+    known.insert(known.begin(), "relax");
+    throw Error("no expression is called '" + name + "'; there is " + list_with_suggestion(name, known));
+  }
   return limited(controls);
 }
 
@@ -143,7 +146,7 @@ Controls action_unit_controls(const Model& model, const std::map<std::string, do
     if (!add_pose(model, model.action_units, name, intensity, controls) &&
         !add_pose(model, model.action_units, unit, share * intensity, controls))
       throw Error("no action unit is called '" + name + "'; there is " +
-                  list_with_suggestion(name, names_of(model.action_units)));
+                  list_with_suggestion("", names_of(model.action_units)));
   }
   return limited(controls);
 }

@@ -1,3 +1,4 @@
+#include "frontalis/suggestion.hpp"
 #include "scene/sections.hpp"
 
 #include <algorithm>

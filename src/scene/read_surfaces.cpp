@@ -1,4 +1,5 @@
 #include "frontalis/scene/head_template.hpp"
+#include "frontalis/suggestion.hpp"
 #include "scene/sections.hpp"
 
 #include <algorithm>

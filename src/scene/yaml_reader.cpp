@@ -1,6 +1,7 @@
 #include "scene/yaml_reader.hpp"
 
 #include "frontalis/error.hpp"
+#include "frontalis/suggestion.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "frontalis/suggestion.hpp"
 #include "scene/quantity.hpp"
 
 #include <fmt/format.h>

@@ -119,6 +119,17 @@ TEST(NamedControls, wrong_ones_are_told_with_those_that_exist)
                 })
                 .find("must be from 0 to 1"),
             std::string::npos);
+  EXPECT_EQ(told(
+                [&] {
+                  action_unit_controls(model, { { "AU13", 1 } });
+                })
+                .find("did you mean"),
+            std::string::npos)
+      << "units that differ by a digit have nothing in common";
+  EXPECT_NE(told([&] { expression_controls(model, "relaxx"); }).find("(did you mean 'relax'?)"), std::string::npos);
+  std::vector<RigidTransform> bones = rest_controls(model).bone;
+  EXPECT_NE(told([&] { set_bone_motion(model, "Finger", {}, bones); }).find("(did you mean 'finger'?)"),
+            std::string::npos);
   EXPECT_NE(told([&] { expression_controls(model, "Smile"); }).find("(did you mean 'smile'?)"), std::string::npos);
   std::vector<float> activation = rest_controls(model).activation;
   EXPECT_NE(told(

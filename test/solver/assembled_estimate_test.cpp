@@ -76,7 +76,7 @@ TEST(AssembledEstimate, is_found_ever_more_rarely_while_the_model_changes)
       EXPECT_TRUE(estimate.in_motion());
       if (!vibrates)
         search.found *= 1.04;
-      EXPECT_EQ(search.steps_until_next(estimate, 0, vibrates ? 1.175 * soft : 0), steps);
+      EXPECT_EQ(search.steps_until_next(estimate, 0, vibrates ? 1.172 * soft : 0), steps);
     }
     EXPECT_FALSE(estimate.in_motion());
     EXPECT_DOUBLE_EQ(estimate.covered(0), 1.1 * search.found);
@@ -102,7 +102,8 @@ TEST(AssembledEstimate, is_found_again_when_growth_has_cost_as_many_steps_as_a_s
   AssembledEstimate estimate;
   Search search;
   search.renew(estimate, 0);
-  EXPECT_EQ(search.steps_until_next(estimate, 0, 4 * soft), 50) << "0.467 of each step is lost, at most 20 steps";
+  EXPECT_EQ(search.steps_until_next(estimate, 0, 4 * soft), 50)
+      << "0.467 of each step is lost; the search follows the plan that exceeds 20";
   EXPECT_EQ(search.steps_until_next(estimate, 0, 1.43 * soft), 190) << "0.109 of each";
   EXPECT_EQ(search.steps_until_next(estimate, 0, 1.15 * soft), 300) << "0.006 of each";
 }

@@ -237,7 +237,7 @@ TEST_P(LiveEffects, sliding_does_not_come_back_where_nodes_have_left_their_surfa
   const auto solver = make(model);
   switch_live(*solver, Effect::sliding, false);
   Vectors u = displacements(*solver);
-  for (const double share : { 0.2, 0.8 })
+  for (const double share : { 0.2, 0.8, 30.0 })
   {
     for (const SlidingNode& node : model.sliding)
       u[node.node].fill(share * model.spacing[0]);
@@ -252,6 +252,11 @@ TEST_P(LiveEffects, sliding_does_not_come_back_where_nodes_have_left_their_surfa
   }
   EXPECT_FALSE(solver->effects().has(Effect::sliding));
   solver->reset();
+  // A node that moves with its bone stays at its distance from it.
+  Controls controls = solver->controls();
+  for (RigidTransform& bone : controls.bone)
+    bone.translation[1] = 0.3 * model.spacing[0];
+  solver->advance(2e-3, controls);
   solver->switch_effect(Effect::sliding, true);
   EXPECT_TRUE(solver->effects().has(Effect::sliding));
 }

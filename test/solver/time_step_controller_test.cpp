@@ -248,6 +248,41 @@ TEST(TimeStepController, slows_down_whatever_it_chooses)
     EXPECT_THROW(controller.slow_down(refused), Error);
 }
 
+TEST(TimeStepController, needs_less_caution_where_searches_have_a_margin)
+{
+  TimeStepController controller(rest, by_model, 0.9, 0);
+  controller.renew_assembled({}, false, [](const auto&) { return 0.08 * rest; });
+  controller.observe(0.13 * rest, 0, 10);
+  EXPECT_TRUE(choose(controller).bound_every_step);
+  EXPECT_NEAR(choose(controller).dt, 0.62 * controller.critical_step_at(0.13 * rest), 1e-6 * critical);
+  int steps = 0;
+  for (; choose(controller).bound_every_step && steps < 100; ++steps)
+    controller.observe(0.13 * rest, 0, 1);
+  EXPECT_EQ(steps, 32);
+}
+
+TEST(TimeStepController, a_kept_state_knows_the_steps_that_growth_has_cost)
+{
+  TimeStepController one(rest, by_model, 0.9, 0), other(rest, by_model, 0.9, 0);
+  int searches = 0;
+  const auto search = [&searches](const auto&)
+  {
+    ++searches;
+    return 0.08 * rest;
+  };
+  one.renew_assembled({}, false, search);
+  one.observe(0.13 * rest, 0, 1);
+  one.observe(0.13 * rest, 0, 100);  // loses 0.164 of each step
+  other.restore(one.state());
+  for (TimeStepController* controller : { &one, &other })
+  {
+    controller->renew_assembled({}, false, search);
+    controller->observe(0.13 * rest, 0, 50);
+    controller->renew_assembled({}, false, search);
+  }
+  EXPECT_EQ(searches, 3);
+}
+
 TEST(TimeStepController, goes_on_from_a_kept_state)
 {
   TimeStepController one(rest, by_bound, 0.9, 0), other(rest, by_bound, 0.9, 0);

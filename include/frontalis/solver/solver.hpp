@@ -17,7 +17,7 @@ namespace frontalis
 
 /// Increased whenever the same model and controls give a different motion (other steps, other laws), or Solver::pack()
 /// gives different bytes. Stored motions of another generation are refused.
-constexpr int motion_generation = 25;
+constexpr int motion_generation = 26;
 
 /// A name of backend_names(): "auto" (the GPU if there is one, else the CPU), "reference" (double precision, plain
 /// loops; slow, but tests compare the others with it), "cpu" (SIMD, all cores), "cuda".
@@ -112,9 +112,9 @@ public:
 
   /// The effects of the model that are switched on. reset() does not change them.
   virtual EffectSet effects() const = 0;
-  /// An effect that is off takes no time; its arrays stay allocated. When it is switched on again, it starts without
-  /// its history (viscous stresses, friction). Restarts the energy ledger. Throws Error if the model does not have the
-  /// effect, if another effect needs it, or if it cannot be switched while running.
+  /// An effect that is off takes no time; its arrays stay allocated. Switched on again, it starts without its history
+  /// (viscous stresses, friction). Restarts the energy ledger. Throws Error if the model lacks the effect, if another
+  /// needs it, if it cannot be switched, or if a node is half an edge from the distance at which it would slide.
   virtual void switch_effect(Effect effect, bool on) = 0;
   /// Memory of the solver's arrays, without the model.
   virtual std::vector<Allocation> allocations() const = 0;

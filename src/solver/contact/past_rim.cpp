@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace frontalis
 {
@@ -53,9 +54,10 @@ double farthest_from_level(const Model& model, const NodalVectors& displacements
   for (const SlidingNode& node : model.sliding)
   {
     const SampledField& field = model.constraint_surfaces[node.surface].field;
-    const double off =
-        level_at(field, place_of(model, node, displacements, bones)) - level_at(field, rest_position(model, node.node));
-    farthest = std::max(farthest, std::abs(off));  // keeps the number if the other is NaN
+    const double off = level_at(field, place_of(model, node, displacements, bones)) - node.distance;
+    if (!std::isfinite(off))
+      return std::numeric_limits<double>::infinity();
+    farthest = std::max(farthest, std::abs(off));
   }
   return farthest;
 }

@@ -11,8 +11,8 @@ namespace frontalis
 void find_nodes_past_rim(const Model& model, const NodalVectors& displacements,
                          const std::vector<RigidTransform>& bones, Monitor& monitor);
 
-/// Largest distance [m] between the level of its surface at which a sliding node is and the one that it keeps. Nodes
-/// past the rim are left out.
+/// Largest distance [m] between the level of its surface at which a sliding node is and the one that it keeps. Infinite
+/// if a node is where its surface has no samples.
 double farthest_from_level(const Model& model, const NodalVectors& displacements,
                            const std::vector<RigidTransform>& bones);
 

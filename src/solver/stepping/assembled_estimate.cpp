@@ -18,8 +18,8 @@ constexpr double steady_change = 0.03;
 // after twice as many steps, or after `longest_valid` if the model is steady.
 constexpr double shortest_time = 0.03;  // [s]
 constexpr std::int64_t fewest_valid = 75, shortest_valid = 300, longest_valid = 2000;
-// A search takes as long as 10 to 40 steps. One is made when the steps that growth made necessary have cost as much:
-// what was measured as growth, the bound's, is often not the model's.
+// A search takes as long as 10 to 40 steps. Measured growth shortens steps, though often only the bound has grown, not
+// the model: a search is made once the additional steps have cost as much.
 constexpr double search_cost = 20;
 // The ratio is found for activations that are higher by this much than the present ones, so that searches are few while
 // activations grow.
@@ -44,7 +44,7 @@ bool AssembledEstimate::in_motion() const { return known() && steps_valid_ < lon
 void AssembledEstimate::steps_taken(int steps, double covered)
 {
   steps_ += steps;
-  if (covered > found_)
+  if (known() && covered > found_)
     steps_lost_ += steps * (1 - std::sqrt(found_ / covered));
 }
 

@@ -32,9 +32,9 @@ public:
   double softest() const { return softest_; }  ///< the least that a search has found, with its margin
   /// Whether tissue may still be stiffening after a change of activations or poses.
   bool in_motion() const;
-  /// Number of steps until the next search is due, at least 1.
+  /// Number of steps until the next search is due at the latest, at least 1.
   std::int64_t steps_left() const { return std::max<std::int64_t>(steps_valid_ - steps_, 1); }
-  /// Counts steps that were as long as `covered` allowed [1/s2].
+  /// Counts steps that were at most as long as `covered` allowed [1/s2].
   void steps_taken(int steps, double covered);
   /// Searches if this is due, and says whether it did. `activation`: the largest activations until the next call.
   /// `moving`: whether bones move, so that tissue stiffens where no muscle acts. `measured`: at present. `most`: bound
@@ -53,7 +53,7 @@ private:
   double latest_ = 0;              // what the latest search found [1/s2]
   std::int64_t steps_ = 0;         // steps since the latest search
   std::int64_t steps_valid_ = 0;   // number of steps for which it is valid
-  double steps_lost_ = 0;          // number of steps made since, less that of steps as long as the estimate allows
+  double steps_lost_ = 0;          // number of steps since beyond those that the estimate alone would have needed
   std::vector<float> activation_;  // of the latest search
 };
 

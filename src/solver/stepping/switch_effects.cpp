@@ -2,12 +2,15 @@
 
 #include "solver/stepping/time_stepper.hpp"
 
+#include "frontalis/error.hpp"
 #include "solver/contact/past_rim.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <string>
 
 namespace frontalis
 {
@@ -21,7 +24,7 @@ constexpr double largest_jump = 0.5;
 
 void TimeStepper::switch_effect(Effect effect, bool on)
 {
-  if (effect == Effect::sliding && on && !effects_.running().has(effect))
+  if (effect == Effect::sliding && on && !slides())
     check_sliding_nodes();
   if (!effects_.change(effect, on))
     return;
@@ -53,17 +56,24 @@ void TimeStepper::effects_switched(const std::vector<Effect>& effects)
   displacements_were_set();
 }
 
+bool TimeStepper::slides() const { return !model_->sliding.empty() && effects_.running().has(Effect::sliding); }
+
 void TimeStepper::check_sliding_nodes() const
 {
+  if (motion_.diverged)
+    return;
   NodalVectors u;
   displacements(u);
   const double farthest = farthest_from_level(*model_, u, motion_.controls.bone),
                allowed = largest_jump * shortest_edge();
-  if (!(farthest <= allowed))
-    throw Error(
-        fmt::format("sliding cannot be switched on now: nodes have left their surface by up to {:.3g} mm (allowed: "
-                    "{:.2g} mm); bring the face to rest first, or reset it",
-                    1e3 * farthest, 1e3 * allowed));
+  if (farthest <= allowed)
+    return;
+  const std::string how_far =
+      std::isfinite(farthest) ? fmt::format("their distance from their surface by up to {:.3g} mm (allowed: {:.2g} mm)",
+                                            1e3 * farthest, 1e3 * allowed)
+                              : "the known part of their surface";
+  throw Error("sliding cannot be switched on now: nodes have left " + how_far +
+              "; bring the face to rest first, or reset it");
 }
 
 }  // namespace frontalis

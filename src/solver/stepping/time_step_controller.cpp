@@ -15,7 +15,7 @@ namespace
 
 // These values are empirical: with them the hard cases of doc/stability.md pass.
 // Cautious steps: fraction of the critical step, and their number after signs of stiffening. What searches find already
-// has a margin while tissue moves.
+// has a margin, of a quarter of the squared frequency while tissue moves.
 struct Caution
 {
   double share;

@@ -339,7 +339,7 @@ Monitor TimeStepper::monitor()
   result.step_share = motion_.latest_step / result.critical_time_step;
   result.lost_points = backend_->lost_points();
   result.added_mass = mass_in_motion_.proportion(motion_.added);
-  if (!model_->sliding.empty() && result.finite && effects_.running().has(Effect::sliding))
+  if (result.finite && slides())
   {
     NodalVectors u;
     displacements(u);

@@ -88,6 +88,7 @@ private:
   void replace_masses(const std::vector<AddedMass>& before);
   StepPlan plan_to(const Controls& next, const TimeStepController::Choice& choice);
   void effects_switched(const std::vector<Effect>& effects);
+  bool slides() const;
   void check_sliding_nodes() const;
   /// Resets the choice of the time step and opens the ledger again.
   void displacements_were_set();
