@@ -111,6 +111,32 @@ std::string cut_off_ply(const std::string& file)
       announced, found);
 }
 
+/// What is wrong with vertices of text whose numbers have a decimal comma, or an empty text. Importers take 10,5
+/// for 10. `vertex`: word before the coordinates in a line.
+std::string decimal_comma(const std::string& file, const std::string& vertex)
+{
+  constexpr int looked_at = 1000;  // vertices; a program writes all of them in one way
+  std::ifstream stream(file);
+  int number = 0, vertices = 0;
+  for (std::string line; vertices < looked_at && std::getline(stream, line);)
+  {
+    ++number;
+    std::istringstream words(line);
+    if (std::string word; !(words >> word) || word != vertex)
+      continue;
+    ++vertices;
+    if (line.find(',') != std::string::npos)
+    {
+      line.erase(std::min(line.size(), line.find('\r')));
+      return fmt::format(
+          "line {} has numbers with a comma ('{}'); they must have a decimal point, as in 10.5: export it "
+          "again, or replace the commas",
+          number, line);
+    }
+  }
+  return {};
+}
+
 /// Throws Error if a face has no corners or one that is not there, which the importers of PLY and OFF do not check.
 void check_faces(const aiScene& scene, const std::string& file)
 {
@@ -143,9 +169,11 @@ TriangleMesh import_mesh(const std::string& file, double unit)
   if (std::string(start.data(), start.size()) == "\xef\xbb\xbf")
     throw Error("mesh file " + file + ": begins with a byte-order mark; save it as text without one");
   const std::string extension = in_lower_case(std::filesystem::path(file).extension().string());
-  const std::string cut_off = extension == ".ply" ? cut_off_ply(file) : extension == ".stl" ? cut_off_stl(file) : "";
-  if (!cut_off.empty())
-    throw Error("mesh file " + file + ": " + cut_off);
+  std::string fault = extension == ".ply" ? cut_off_ply(file) : extension == ".stl" ? cut_off_stl(file) : "";
+  if (fault.empty() && (extension == ".obj" || extension == ".stl"))
+    fault = decimal_comma(file, extension == ".obj" ? "v" : "vertex");
+  if (!fault.empty())
+    throw Error("mesh file " + file + ": " + fault);
   Assimp::Importer importer;
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   const aiScene* scene = importer.ReadFile(file, 0);
