@@ -11,6 +11,8 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 namespace frontalis
@@ -19,12 +21,24 @@ namespace frontalis
 namespace
 {
 
+namespace fs = std::filesystem;
+
 constexpr double play_period = 1.0 / 30;     // time between two updates of changing activations [s]
 constexpr double repetition_period = 0.5;    // a face that stands still repeats its frame after this time [s]
 constexpr double diagnostics_period = 1.0;   // time between two diagnostic messages without ~diagnostic_period [s]
 constexpr double longest_period = 1e6;       // largest ~diagnostic_period [s]; ROS can count durations up to 2e9 s
 constexpr double stalled_after = 3.0;        // diagnostics warn if there is no frame for this time [s]
 constexpr double speed_settled_after = 3.0;  // the real-time factor is logged after this time [s]
+
+// roslaunch starts nodes in ROS_HOME, so that a path that was meant relative to a shell's folder is not found.
+void check_relative_path(const std::string& path)
+{
+  if (std::error_code unknown; fs::path(path).is_relative() && !fs::exists(path, unknown))
+    throw Error(
+        fmt::format("{}: no such file in {}, the folder in which this node runs; give an absolute path, such as "
+                    "$PWD/{}",
+                    path, fs::current_path(unknown).string(), path));
+}
 
 // Reads ~diagnostic_period. Replaces a bad value, because diagnostic_updater reads the parameter too and would end the
 // node.
@@ -106,6 +120,7 @@ std::shared_ptr<const Model> FaceNode::make_model(const FaceParameters& paramete
 {
   const auto start = ros::WallTime::now();
   std::shared_ptr<const Model> model;
+  check_relative_path(parameters.model.empty() ? parameters.bake.scene : parameters.model);
   if (!parameters.model.empty())
     model = std::make_shared<const Model>(read_model(parameters.model));
   else
@@ -322,12 +337,18 @@ void FaceNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status)
   std::unique_lock<std::mutex> lock(frame_mutex_);
   const bool moves_by_itself = parameters_.runner.pace != Pace::lock_step && !paused_;
   const double silence = (ros::WallTime::now() - last_frame_).toSec();
+  const bool lacks_clock = ros::Time::isSimTime() && ros::Time::now().isZero();
+  if (lacks_clock && moves_by_itself && has_frame_)
+    ROS_WARN_STREAM_ONCE(name_ << ": /use_sim_time is true, but nobody publishes /clock: all messages have the time 0, "
+                                  "which rviz, tf2 and cameras do not show");
   if (frame_.failed)
     status.summary(DiagnosticStatus::ERROR, frame_.failure);
   else if (!frame_finite_)
     status.summary(DiagnosticStatus::ERROR, "the latest frame is not finite and was not published; call ~reset");
   else if (moves_by_itself && (!has_frame_ || silence > stalled_after))
     status.summaryf(DiagnosticStatus::WARN, "no frame for more than %g seconds", stalled_after);
+  else if (lacks_clock && moves_by_itself)
+    status.summary(DiagnosticStatus::WARN, "/use_sim_time is true, but nobody publishes /clock");
   else if (!moves_by_itself)
     status.summary(DiagnosticStatus::OK, parameters_.runner.pace == Pace::lock_step ? "waiting for ~step" : "paused");
   else if (parameters_.runner.pace == Pace::real_time && frame_.time > 1 &&
