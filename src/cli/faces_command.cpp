@@ -154,10 +154,10 @@ void add_faces_command(CLI::App& app)
   command->add_flag("--measure", options->measured_only, "only measure: faces unlike people's are no error");
   command->add_option("--json", options->json, "write the figures of all landmarks to this file");
   command->add_option("--table", options->table, "write the table to this file, as markdown");
-  command->add_option("--pictures", options->pictures,
-                      "write a contact sheet to faces.png in this folder (needs gnuplot)");
-  add_positive(*command, "--columns", options->columns, "of the contact sheet (6)");
-  add_view_options(*command, command->get_option("--pictures"), options->view);
+  CLI::Option* const pictures = command->add_option(
+      "--pictures", options->pictures, "write a contact sheet to faces.png in this folder (needs gnuplot)");
+  add_positive(*command, "--columns", options->columns, "of the contact sheet (6)")->needs(pictures);
+  add_view_options(*command, pictures, options->view);
   add_solver_options(*command, options->settings.solver);
   add_scene_options(*command, options->source);
   command->callback([options] { measure_faces(*options); });
