@@ -122,6 +122,7 @@ void AttachedTables::add_group(const Model& model, const std::vector<double>& ma
       tie.master_plane = add_place(model, master, node->surface);
       tie.plane = add_place(model, node->node, node->surface);
     }
+    group.fixed |= tie.bone >= 0 ? on_bones : 0;
     ties.push_back(tie);
   }
   group.last = static_cast<std::int32_t>(ties.size());

@@ -2,6 +2,7 @@
 
 #include "cuda/kernels/attachment_arguments.hpp"
 #include "cuda/kernels/bone_pose.cuh"
+#include "cuda/kernels/kept_samples.cuh"
 #include "frontalis/physics/element/attached_group.hpp"
 
 namespace frontalis
@@ -21,9 +22,62 @@ struct GroupTables
   physics::KeptLevel<float>* planes;  ///< the same as AttachedArguments::planes, or a copy of them
 };
 
-/// A group in the form that physics::move_attached_group() reads. Levels are functions of the displacement relative to
-/// the surface, which single precision resolves to nanometres.
+__device__ __forceinline__ physics::Vec3<float> place_of(const float (&p)[3]) { return { p[0], p[1], p[2] }; }
+__device__ __forceinline__ physics::Vec3<float> displacement_of(const float4& u) { return { u.x, u.y, u.z }; }
+
+/// Finds those planes of a sliding node and of its master anew that do not cover their displacements `u` (indexed by
+/// device node). Where no samples are stored or the gradient is too short, the latest plane is kept. `when`: see
+/// bone_motion_at().
+static __device__ __noinline__ void renew_planes(const StepArguments& g, const AttachedGroup* group,
+                                                 const AttachedTie* tie, physics::KeptLevel<float>* planes,
+                                                 const float4* u, int when)
+{
+  physics::Vec3<float> gone[2] = { displacement_of(u[tie->node]), displacement_of(u[group->master]) };
+  if (tie->bone >= 0)
+  {
+    const BoneMotion bone = bone_motion_at(g, when, tie->bone);
+    gone[0] = bone.gone(place_of(tie->rest), gone[0]);
+    gone[1] = bone.gone(place_of(group->rest), gone[1]);
+  }
+  for (int n = 0; n < 2; ++n)
+  {
+    const std::int32_t plane = n == 0 ? tie->plane : tie->master_plane;
+    physics::KeptLevel<float> level = planes[plane];
+    if (level.covers(gone[n]))
+      continue;
+    const AttachedPlace at = g.attached.places[plane];
+    const physics::DistanceField& field = g.fields[at.surface];
+    physics::FieldValue<float> value{};
+    if (field.radius > 0)
+      value = physics::sphere_value(at.distance, place_of(at.offset), gone[n]);
+    else if (!physics::sample(field, { { at.cell[0], at.cell[1], at.cell[2] }, place_of(at.offset) + gone[n] }, value))
+      continue;
+    physics::renew_level(value, gone[n], level);
+    planes[plane] = g.attached.planes[plane] = level;
+  }
+}
+
+/// Renews the planes of a group that its nodes have left at the displacements `u`, each thread those of its ties.
 template <int Lanes>
+__device__ __forceinline__ void keep_planes(const StepArguments& g, const GroupTables& tables, std::uint32_t index,
+                                            const float4* u, int when)
+{
+  const AttachedGroup* const group = tables.groups + index;
+  for (std::int32_t t = group->first + static_cast<std::int32_t>(threadIdx.x & (Lanes - 1)); t < group->last;
+       t += Lanes)
+  {
+    const AttachedTie* const tie = tables.ties + t;
+    if (tie->plane < 0 || (tie->bone < 0 && tables.planes[tie->plane].covers(displacement_of(u[tie->node])) &&
+                           tables.planes[tie->master_plane].covers(displacement_of(u[group->master]))))
+      continue;
+    aside(renew_planes)(g, group, tie, tables.planes, u, when);
+  }
+}
+
+/// A group in the form that physics::move_attached_group() reads. Levels are functions of the displacement relative to
+/// the surface, which single precision resolves to nanometres. `Bones`: whether some of its nodes or surfaces move with
+/// bones.
+template <int Lanes, bool Bones>
 struct MovedGroup
 {
   using Place = physics::Vec3<float>;
@@ -90,73 +144,61 @@ struct MovedGroup
     set_motion_of(tables.ties[tie].node, to);
   }
 
-  __device__ __forceinline__ Motion bone_at(std::int32_t bone, const float (&rest)[3]) const
+  __device__ __forceinline__ void bone_at(std::int32_t tie, Motion& node, Motion& master) const
   {
-    if (bone < 0)
-      return { { 0, 0, 0 }, { 0, 0, 0 } };
-    const BoneMotion motion = bone_motion_at(g, step + 1, bone);
-    const Place at{ rest[0], rest[1], rest[2] };
-    return { motion.displacement_of(at), motion.velocity_at(at) };
+    const AttachedTie& of = tables.ties[tie];
+    node = master = { { 0, 0, 0 }, { 0, 0, 0 } };
+    if (!Bones || of.bone < 0)
+      return;
+    const BoneMotion bone = bone_motion_at(g, step + 1, of.bone);
+    const Place at_node = place_of(of.rest), at_master = place_of(group.rest);
+    node = { bone.displacement_of(at_node), bone.velocity_at(at_node) };
+    master = { bone.displacement_of(at_master), bone.velocity_at(at_master) };
   }
-  __device__ __forceinline__ Motion bone_at_node(std::int32_t tie) const
+  __device__ __forceinline__ void levels(std::int32_t tie, const Place& moved, const Place& master_moved, Level& own,
+                                         Level& masters) const
   {
-    return bone_at(tables.ties[tie].bone, tables.ties[tie].rest);
-  }
-  __device__ __forceinline__ Motion bone_at_master(std::int32_t tie) const
-  {
-    return bone_at(tables.ties[tie].bone, group.rest);
-  }
-
-  /// The plane of a node at the displacement `gone` relative to the surface. Where no samples are stored or the
-  /// gradient is too short, the latest plane is kept.
-  __device__ __forceinline__ physics::KeptLevel<float> kept_level(std::int32_t plane, const Place& gone) const
-  {
-    physics::KeptLevel<float> level = tables.planes[plane];
-    if (level.covers(gone))
-      return level;
-    const AttachedPlace at = g.attached.places[plane];
-    const physics::DistanceField& field = g.fields[at.surface];
-    const Place offset{ at.offset[0], at.offset[1], at.offset[2] };
-    physics::FieldValue<float> value{};
-    if (field.radius > 0)
-      value = physics::sphere_value(at.distance, offset, gone);
-    else if (!physics::sample(field, { { at.cell[0], at.cell[1], at.cell[2] }, offset + gone }, value))
-      return level;
-    physics::renew_level(value, gone, level);
-    tables.planes[plane] = g.attached.planes[plane] = level;
-    return level;
-  }
-  __device__ __forceinline__ Level level_at(std::int32_t plane, std::int32_t bone, const float (&rest)[3],
-                                            const Place& moved) const
-  {
-    if (bone < 0)
+    const AttachedTie& of = tables.ties[tie];
+    const physics::KeptLevel<float> plane = tables.planes[of.plane], masters_plane = tables.planes[of.master_plane];
+    if (!Bones || of.bone < 0)
     {
-      const physics::KeptLevel<float> level = kept_level(plane, moved);
-      return { level.gradient, { 0, 0, 0 }, level.level_at(moved) };
+      own = { plane.gradient, { 0, 0, 0 }, plane.level_at(moved) };
+      masters = { masters_plane.gradient, { 0, 0, 0 }, masters_plane.level_at(master_moved) };
+      return;
     }
-    const BoneMotion motion = bone_motion_at(g, step + 1, bone);
-    const Place at{ rest[0], rest[1], rest[2] }, gone = motion.gone(at, moved);
-    const physics::KeptLevel<float> level = kept_level(plane, gone);
-    return { motion.turned(level.gradient), motion.velocity_at(at + gone), level.level_at(gone) };
-  }
-  __device__ __forceinline__ Level level_of_node(std::int32_t tie, const Place& moved) const
-  {
-    return level_at(tables.ties[tie].plane, tables.ties[tie].bone, tables.ties[tie].rest, moved);
-  }
-  __device__ __forceinline__ Level level_of_master(std::int32_t tie, const Place& moved) const
-  {
-    return level_at(tables.ties[tie].master_plane, tables.ties[tie].bone, group.rest, moved);
+    const BoneMotion bone = bone_motion_at(g, step + 1, of.bone);
+    const Place rest = place_of(of.rest), master_rest = place_of(group.rest), gone = bone.gone(rest, moved),
+                master_gone = bone.gone(master_rest, master_moved);
+    own = { bone.turned(plane.gradient), bone.velocity_at(rest + gone), plane.level_at(gone) };
+    masters = { bone.turned(masters_plane.gradient), bone.velocity_at(master_rest + master_gone),
+                masters_plane.level_at(master_gone) };
   }
 };
 
-/// Applies the constraints of one group after the update of a step. The `Lanes` threads of the group call it together.
-/// u, v: as in MovedGroup.
+template <int Lanes>
+static __device__ __noinline__ void follow_on_bones(const StepArguments& g, GroupTables tables, std::uint32_t index,
+                                                    int step, float4* u, float* v0, float* v1, float* v2)
+{
+  const AttachedGroup group = tables.groups[index];
+  float* const v[3] = { v0, v1, v2 };
+  MovedGroup<Lanes, true> moved{ g, tables, group, u, v, step, static_cast<int>(threadIdx.x) & (Lanes - 1) };
+  physics::move_attached_group(moved, g.dt);
+}
+
+/// Applies the constraints of one group after the update of a step, with planes that keep_planes() found. The `Lanes`
+/// threads of the group call it together. u, v: as in MovedGroup.
 template <int Lanes>
 __device__ __forceinline__ void follow_master(const StepArguments& g, const GroupTables& tables, std::uint32_t index,
                                               int step, float4* u, float* const (&v)[3])
 {
   const AttachedGroup group = tables.groups[index];
-  MovedGroup<Lanes> moved{ g, tables, group, u, v, step, static_cast<int>(threadIdx.x) & (Lanes - 1) };
+  // The code for bones is a call, because it would make the kernel spill registers in models without bones.
+  if ((group.fixed & on_bones) != 0)
+  {
+    aside(follow_on_bones<Lanes>)(g, tables, index, step, u, v[0], v[1], v[2]);
+    return;
+  }
+  MovedGroup<Lanes, false> moved{ g, tables, group, u, v, step, static_cast<int>(threadIdx.x) & (Lanes - 1) };
   physics::move_attached_group(moved, g.dt);
 }
 

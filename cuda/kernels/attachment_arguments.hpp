@@ -7,6 +7,9 @@
 namespace frontalis
 {
 
+/// Bit of AttachedGroup::fixed.
+constexpr std::uint32_t on_bones = 8;
+
 /// A master and the range of the nodes that follow it.
 struct alignas(16) AttachedGroup
 {
@@ -14,7 +17,7 @@ struct alignas(16) AttachedGroup
   float mass;                ///< of the master [kg]
   std::uint32_t master;      ///< device node
   std::int32_t first, last;  ///< range of AttachedArguments::ties
-  std::uint32_t fixed;       ///< bit per axis along which the master has a prescribed path
+  std::uint32_t fixed;       ///< bit per axis along which the master has a prescribed path; on_bones, if a tie is
 };
 
 /// A node that follows a master.

@@ -13,8 +13,10 @@ __global__ void __launch_bounds__(block) follow_masters(const __grid_constant__ 
   let_next_kernel_start();
   wait_for_kernel_before();
   const std::uint32_t index = (blockIdx.x * block + threadIdx.x) / group_lanes;
-  if (index < g.attached.count)
-    follow_master<group_lanes>(g, group_tables(g.attached), index, g.step_begin, g.u[1 - g.first], g.v);
+  if (index >= g.attached.count)
+    return;
+  keep_planes<group_lanes>(g, group_tables(g.attached), index, g.u[1 - g.first], g.step_begin + 1);
+  follow_master<group_lanes>(g, group_tables(g.attached), index, g.step_begin, g.u[1 - g.first], g.v);
 }
 
 }  // namespace cuda

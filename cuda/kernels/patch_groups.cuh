@@ -91,6 +91,7 @@ __device__ __forceinline__ void move_groups(const StepArguments& g, const StepLa
   for (std::uint32_t index = groups.begin + threadIdx.x / group_lanes; index < groups.end;
        index += blockDim.x / group_lanes)
   {
+    keep_planes<group_lanes>(g, groups.tables, index, u, step + 1);
     follow_master<group_lanes>(g, groups.tables, index, step, u, v);
     const AttachedGroup& group = groups.tables.groups[index];
     if (lane == 0)

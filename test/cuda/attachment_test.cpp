@@ -122,7 +122,10 @@ struct Device
                    nullptr,
                    nullptr };
     for (std::uint32_t group = 0; group < g.attached.count; ++group)
+    {
+      keep_planes<1>(g, group_tables(g.attached), group, g.u[1], 1);
       follow_master<1>(g, group_tables(g.attached), group, 0, g.u[1], g.v);
+    }
   }
 
   static std::vector<std::uint32_t> numbers(std::size_t count)

@@ -220,8 +220,11 @@ struct AttachedNodes<Real>::MovedGroup
   {
     return { bones.displacement(bone, p), bones.velocity(bone, p) };
   }
-  Motion bone_at_node(std::int32_t tie) const { return bone_at(at(tie).bone, at(tie).rest); }
-  Motion bone_at_master(std::int32_t tie) const { return bone_at(at(tie).bone, rest); }
+  void bone_at(std::int32_t tie, Motion& node, Motion& master) const
+  {
+    node = bone_at(at(tie).bone, at(tie).rest);
+    master = bone_at(at(tie).bone, rest);
+  }
 
   physics::MovingLevel<double> level(std::int32_t plane, const Tie& tie, const Point& place) const
   {
@@ -231,13 +234,11 @@ struct AttachedNodes<Real>::MovedGroup
     of.renew(kept, tie.surface, p);
     return { pose.turned(kept.gradient), bones.velocity(tie.bone, p), kept.level_at(p) };
   }
-  physics::MovingLevel<double> level_of_node(std::int32_t tie, const Point& moved) const
+  void levels(std::int32_t tie, const Point& moved, const Point& master_moved, physics::MovingLevel<double>& own,
+              physics::MovingLevel<double>& masters) const
   {
-    return level(at(tie).plane, at(tie), at(tie).rest + moved);
-  }
-  physics::MovingLevel<double> level_of_master(std::int32_t tie, const Point& moved) const
-  {
-    return level(at(tie).master_plane, at(tie), rest + moved);
+    own = level(at(tie).plane, at(tie), at(tie).rest + moved);
+    masters = level(at(tie).master_plane, at(tie), rest + master_moved);
   }
 };
 
