@@ -151,9 +151,7 @@ bool TimeStepper::advance(double seconds, const Controls& asked, const std::func
   const double begin = motion_.time, end = begin + seconds;
   const Controls from = motion_.controls;
   const Controls target{ asked.activation, motion_.bones.reached(from.bone, asked.bone, seconds) };
-  double longest_step = std::numeric_limits<double>::infinity();
-  for (const auto& stiffness : discretisation_.added)
-    longest_step = std::min(longest_step, model_->time_step_share * stiffness->longest_step());
+  const double longest = longest_step();
   if (motion_.bones.jumps(from.bone, target.bone, seconds, time_step()))
     controller_.bone_jumped();
   if (seconds > 0)
@@ -163,7 +161,7 @@ bool TimeStepper::advance(double seconds, const Controls& asked, const std::func
     if (model_->time_step_estimate == TimeStepEstimate::assembled)
       renew_assembled_estimate(target);
     const auto choice =
-        controller_.choose(end - motion_.time, longest_step, longest_plan(target, end - motion_.time), traits_);
+        controller_.choose(end - motion_.time, longest, longest_plan(target, end - motion_.time), traits_);
     const double reached = choice.reaches_end ? end : motion_.time + choice.steps * choice.dt;
     const Controls next = choice.reaches_end ? target : interpolate(from, target, (reached - begin) / seconds);
     const StepPlan plan = plan_to(next, choice);
@@ -181,6 +179,14 @@ bool TimeStepper::advance(double seconds, const Controls& asked, const std::func
   }
   motion_.controls = target;
   return true;
+}
+
+double TimeStepper::longest_step() const
+{
+  double longest = std::numeric_limits<double>::infinity();
+  for (const auto& stiffness : discretisation_.added)
+    longest = std::min(longest, model_->time_step_share * stiffness->longest_step());
+  return longest;
 }
 
 double TimeStepper::longest_plan(const Controls& target, double seconds) const

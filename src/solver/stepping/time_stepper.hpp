@@ -7,6 +7,7 @@
 #include "solver/stepping/effect_switches.hpp"
 #include "solver/stepping/time_step_controller.hpp"
 
+#include <algorithm>
 #include <functional>
 
 namespace frontalis
@@ -34,7 +35,7 @@ public:
   void set_damping(double damping);  ///< frontalis/solver/damping.hpp
   void slow_down(double share) override { controller_.slow_down(share); }
   double time() const override { return motion_.time; }
-  double time_step() const override { return controller_.safe_step(); }
+  double time_step() const override { return std::min(controller_.safe_step(), longest_step()); }
   const Controls& controls() const override { return motion_.controls; }
   const std::vector<float>& activation() const override { return motion_.activation; }
   EffectSet effects() const override { return effects_.running(); }
@@ -76,6 +77,8 @@ private:
 
   Motion at_rest() const;
   void renew_conditions();
+  /// Longest step [s] that stiffness added by effects allows whatever the frequency; infinite without such a limit.
+  double longest_step() const;
   /// Longest duration of a plan [s] in a motion that reaches `target` after `seconds`; infinite without a limit.
   double longest_plan(const Controls& target, double seconds) const;
   double shortest_edge() const;  // of a voxel [m]
