@@ -23,8 +23,11 @@ namespace
 constexpr double least_in_tissue = 0.4;   // share of a muscle's volume below which its place is doubtful
 constexpr double least_of_muscle = 0.05;  // and below which the bake ends
 constexpr double sides_differ = 1.3;      // ratio of these shares of a muscle and its counterpart above which it warns
+constexpr double areas_differ = 1.5;      // ratio of the areas of their surfaces above which it warns
 constexpr double largest_tissue = 0.6;    // [m]
-constexpr std::size_t few_voxels = 100;   // with fewer, the unit or the voxel is probably wrong
+// Sizes that no face has: surfaces and distances around them would take all memory.
+constexpr double impossible_tissue[2] = { 1e-3, 0.9 };  // [m]
+constexpr std::size_t few_voxels = 100;                 // with fewer, the unit or the voxel is probably wrong
 
 /// Warns of surfaces that the scene cuts out of the tissue, such as bones, but that lie nowhere near it or are smaller
 /// than a voxel: their length unit or their place is wrong, and tissue fills the place where they should be.
@@ -88,22 +91,29 @@ void find_filled_surfaces(const Scene& scene, const PreparedSurfaces& surfaces, 
   }
 }
 
-/// Warns of tissue that is larger than a head: its length unit is probably wrong.
-void check_size(const Scene& scene, const Volumes& volumes, BakeMonitor& monitor)
+/// Warns of tissue that is larger than a head: its length unit is probably wrong. Returns what to say, if the tissue
+/// has a size that no face has.
+std::string check_size(const Scene& scene, const Volumes& volumes, BakeMonitor& monitor)
 {
   const Box tissue = volumes.tissue_box();
   const double extent = tissue.sizes().maxCoeff();
-  if (!(extent > largest_tissue))
-    return;
+  const bool large = extent > largest_tissue;
   const std::string advice = unit_advice(extent, scene.unit);
-  monitor.warn("{}: the tissue spans {}, more than a head; check 'unit'{}", scene.file, box_text(tissue, scene.unit),
-               advice.empty() ? "" : ": " + advice);
+  const std::string text =
+      fmt::format("{}: the tissue spans {}, {} than a {}; check 'unit'{}", scene.file, box_text(tissue, scene.unit),
+                  large ? "more" : "less", large ? "head" : "millimetre", advice.empty() ? "" : ": " + advice);
+  if (extent < impossible_tissue[0] || extent > impossible_tissue[1])
+    return text;
+  if (large)
+    monitor.warn("{}", text);
+  return {};
 }
 
 /// Throws Error if a volume lies outside the tissue, and reports how much of each muscle was clipped.
 void check_volumes(const Scene& scene, const Volumes& volumes, const Voxels& voxels, BakeMonitor& monitor)
 {
   std::map<std::string, double> in_tissue;  // share of a muscle's volume
+  std::map<std::string, double> area;       // of its surface [m2]
   for (std::size_t v = 0; v < volumes.entries().size(); ++v)
   {
     const Volumes::Entry& entry = volumes.entries()[v];
@@ -131,6 +141,7 @@ void check_volumes(const Scene& scene, const Volumes& volumes, const Voxels& vox
     bool closed = true;
     for (const std::size_t b : entry.inside)
     {
+      area[scene.muscles[entry.muscle].name] += surface_area(volumes.body(b).mesh());
       whole += signed_volume(volumes.body(b).mesh());
       closed = closed && volumes.body(b).closed();
     }
@@ -149,15 +160,29 @@ void check_volumes(const Scene& scene, const Volumes& volumes, const Voxels& vox
           "cut off by a depth or crop: see the table of muscles that --report prints, and check the surface",
           muscle, 100 * size / whole, box_text(extent, scene.unit));
   }
-  for (const auto& [name, share] : in_tissue)
+  const auto compare = [](const std::map<std::string, double>& values, double ratio, const auto& tell)
   {
-    const auto other = counterpart(in_tissue, name);
-    if (other != in_tissue.end() && std::max(share, other->second) > sides_differ * std::min(share, other->second))
-      monitor.warn(
-          "muscle '{}' lies in the tissue with {:.0f} % of its volume, '{}' with {:.0f} %: the face will move "
-          "more on one side; check both surfaces",
-          name, 100 * share, other->first, 100 * other->second);
-  }
+    for (const auto& [name, here] : values)
+      if (const auto other = counterpart(values, name);
+          other != values.end() && std::max(here, other->second) > ratio * std::min(here, other->second))
+        tell(name, here, other->first, other->second);
+  };
+  compare(in_tissue, sides_differ,
+          [&](const std::string& name, double here, const std::string& other, double there)
+          {
+            monitor.warn(
+                "muscle '{}' lies in the tissue with {:.0f} % of its volume, '{}' with {:.0f} %: the face will move "
+                "more on one side; check both surfaces",
+                name, 100 * here, other, 100 * there);
+          });
+  compare(area, areas_differ,
+          [&](const std::string& name, double here, const std::string& other, double there)
+          {
+            monitor.warn(
+                "the surface of muscle '{}' has {:.3g} cm2, that of '{}' {:.3g} cm2: the face will move more on one "
+                "side; check whether one is incomplete or belongs to both sides",
+                name, 1e4 * here, other, 1e4 * there);
+          });
 }
 
 /// Greatest depth of a volume's points below a surface [m], estimated from 4000 points.
@@ -223,8 +248,10 @@ Model bake(const Scene& given, BakeReport* report, const BakeProgress& progress)
   const double sample_spacing = to_vector(scene.accuracy.voxel).minCoeff() / scene.accuracy.samples;
   const Volumes volumes(scene, surfaces, sample_spacing);
   check_openings(scene, volumes);
-  check_size(scene, volumes, monitor);
+  const std::string impossible = check_size(scene, volumes, monitor);
   const Grid grid = make_grid(scene, volumes);
+  if (!impossible.empty())
+    throw Error(impossible);
   find_surfaces_apart(scene, volumes, monitor);
   find_filled_surfaces(scene, surfaces, volumes, monitor);
 

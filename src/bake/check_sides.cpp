@@ -21,8 +21,9 @@ void check_pairs(const Scene& scene, const std::map<std::string, Thing>& things,
   constexpr double least_distance = 1e-3;  // [m]
   constexpr double clear = 0.5;            // cosine; axes of a scene without 'frame' may lie in any direction
   const Vector3d left = to_vector(scene.frame.up).cross(to_vector(scene.frame.forward)).normalized();
-  std::size_t pairs = 0, exchanged = 0, across = 0;
-  std::string first, first_across;
+  const Vector3d middle = to_vector(scene.frame.origin);
+  std::size_t pairs = 0, exchanged = 0, across = 0, on_one_side = 0;
+  std::string first, first_across, first_on_one_side;
   for (const auto& [name, thing] : things)
   {
     const auto other = counterpart(things, name);
@@ -35,6 +36,11 @@ void check_pairs(const Scene& scene, const std::map<std::string, Thing>& things,
       throw failure(
           "{} lies where '{}' does; give each its own data, or use one of them, named without a side, for both",
           thing.place, other->first);
+    // Of a mirrored surface that is used twice, both lie on one side, if not exactly in one place.
+    const double here = left.dot(thing.box.center() - middle), opposite = left.dot(there.center() - middle);
+    if (here * opposite > 0 && std::min(std::abs(here), std::abs(opposite)) > 2 * apart.norm() && on_one_side++ == 0)
+      first_on_one_side = fmt::format("{} and '{}' lie on the {} side of the face frame, {} apart", thing.place,
+                                      other->first, here > 0 ? "left" : "right", length_text(apart.norm(), scene.unit));
     if (apart.norm() > least_distance && std::abs(left.dot(apart)) < clear * apart.norm() && across++ == 0)
       first_across =
           fmt::format("{} lies {} from '{}'", thing.place, length_text(apart.norm(), scene.unit), other->first);
@@ -51,6 +57,9 @@ void check_pairs(const Scene& scene, const std::map<std::string, Thing>& things,
                         "not those of the data"
                       : "exchange their names or files; if all bones or all muscles are exchanged, their data are "
                         "mirrored or turned, as between the axes LPS and RAS of medical images");
+  // If all pairs do, the origin of the frame is elsewhere.
+  if (on_one_side > 0 && on_one_side < pairs)
+    monitor.warn("{}: one of them is probably mirrored or used for both sides", first_on_one_side);
   if (pairs > 0 && across == pairs)
     monitor.warn(
         "{}, but not to its left in the face frame: 'forward' and 'up' of the scene's 'frame' are not those of "

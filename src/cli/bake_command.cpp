@@ -24,7 +24,7 @@ struct BakeOptions
   bool report = false;
 };
 
-// Throws Error, before a long bake, if its result could not be written.
+// Throws Error, before a long bake, if its result could not be written or would replace something else than a model.
 void check_output(const BakeOptions& options)
 {
   if (options.output.empty())
@@ -37,8 +37,8 @@ void check_output(const BakeOptions& options)
     throw Error(options.output + ": is a folder; must be the path of a model file (.vtkhdf)");
   if (std::filesystem::exists(options.output, ignored) && !std::filesystem::is_regular_file(options.output, ignored))
     throw Error(options.output + ": is no regular file; must be the path of a model file (.vtkhdf)");
-  if (std::filesystem::equivalent(options.output, options.source.path, ignored))
-    throw Error(options.output + ": is the scene itself; must be another file");
+  if (std::filesystem::file_size(options.output, ignored) > 0 && !ignored && !begins_as_model(options.output))
+    throw Error(options.output + ": exists and is no model; must be a new file or a model to replace");
 }
 
 // Prints the number and name of each constraint, and how many nodes it restricts.

@@ -233,6 +233,8 @@ void write_dataset(const DatasetOptions& options)
     check_same(description_file, description);
     check_list(list, options.first);
   }
+  else if (std::error_code ignored; std::filesystem::file_size(list, ignored) > 0 && !ignored)
+    throw Error(list + ": exists; --first continues it, and a new data set must have another folder");
   make_folder(options.folder);
   write_text(description_file, json_text(description));
   std::ofstream lines(list, options.first > 0 ? std::ios::app : std::ios::trunc);

@@ -97,7 +97,8 @@ int main(int argc, char** argv)
   }
   catch (const std::bad_alloc&)
   {
-    return report("out of memory; use larger voxels or a smaller region", frontalis::exit_error);
+    return report("out of memory; use larger voxels or a smaller region, and check the scene's 'unit'",
+                  frontalis::exit_error);
   }
   catch (const std::exception& error)
   {

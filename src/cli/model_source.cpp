@@ -12,7 +12,7 @@
 #endif
 
 #include <CLI/CLI.hpp>
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <filesystem>
 #include <fstream>
@@ -33,8 +33,11 @@ void add_scene_options(CLI::App& command, ModelSource& source)
 bool is_model_file(const std::string& path)
 {
   const std::string extension = std::filesystem::path(path).extension().string();
-  if (extension == ".vtkhdf" || extension == ".h5" || extension == ".hdf5")
-    return true;
+  return extension == ".vtkhdf" || extension == ".h5" || extension == ".hdf5" || begins_as_model(path);
+}
+
+bool begins_as_model(const std::string& path)
+{
   // The first eight bytes of every HDF5 file.
   const std::string signature = "\x89HDF\r\n\x1a\n";
   std::string begin(signature.size(), '\0');
@@ -47,8 +50,13 @@ bool is_model_file(const std::string& path)
 namespace
 {
 
-// The cached model with the given hash of its scene, if it is usable. `told` receives a sentence about the result.
-std::optional<Model> cached_model(const std::string& path, const std::string& hash, std::string& told)
+// The file beside a cached model with the warnings of its bake, one per line.
+std::string warnings_beside(const std::string& path) { return path + ".warnings"; }
+
+// The cached model with the given hash of its scene, if it is usable, and the warnings of its bake. `told` receives a
+// sentence about the result.
+std::optional<Model> cached_model(const std::string& path, const std::string& hash, std::string& told,
+                                  std::vector<std::string>& warnings)
 {
   if (path.empty() || !std::filesystem::exists(path))
     return std::nullopt;
@@ -56,6 +64,9 @@ std::optional<Model> cached_model(const std::string& path, const std::string& ha
   {
     Model model = read_model_of(path, hash);
     told = "taken from " + path;
+    std::ifstream file(warnings_beside(path));
+    for (std::string line; std::getline(file, line);)
+      warnings.push_back(line);
     return model;
   }
   catch (const Error& error)
@@ -66,13 +77,17 @@ std::optional<Model> cached_model(const std::string& path, const std::string& ha
 }
 
 // Stores the model. A failure is not an error, because the bake has succeeded.
-void keep_in_cache(const Model& model, const std::string& path, std::string& told)
+void keep_in_cache(const Model& model, const std::vector<std::string>& warnings, const std::string& path,
+                   std::string& told)
 {
   if (path.empty())
     return;
   try
   {
     std::filesystem::create_directories(std::filesystem::path(path).parent_path());
+    std::filesystem::remove(warnings_beside(path));
+    if (!warnings.empty())
+      std::ofstream(warnings_beside(path)) << fmt::format("{}\n", fmt::join(warnings, "\n"));
     write_model(model, path);
     told += "kept as " + path;
   }
@@ -167,7 +182,7 @@ Model bake_scene(const ModelSource& source, BakeSummary* summary)
     for (const std::string& warning : report.warnings)
       fmt::print(source.progress, "warning  {}\n", warning);
   };
-  std::optional<Model> model = cached_model(cached, hash, of_cache);
+  std::optional<Model> model = cached_model(cached, hash, of_cache, report.warnings);
   if (!model)
   {
     Progress progress(source.progress);
@@ -185,7 +200,7 @@ Model bake_scene(const ModelSource& source, BakeSummary* summary)
         fmt::print(source.progress, "{}", table_of(report.surfaces));
       throw;
     }
-    keep_in_cache(*model, cached, of_cache);
+    keep_in_cache(*model, report.warnings, cached, of_cache);
   }
   if (summary == nullptr)
     print_warnings();

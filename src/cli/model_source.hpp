@@ -43,6 +43,8 @@ void add_scene_options(CLI::App& command, ModelSource& source);
 
 /// Whether a file is a baked model: by its extension (.vtkhdf, .h5, .hdf5) or the signature of HDF5 at its beginning.
 bool is_model_file(const std::string& path);
+/// Whether a file begins with the signature of HDF5.
+bool begins_as_model(const std::string& path);
 
 /// Reads a scene and bakes it, and shows the progress. Throws Error, Interrupted.
 Model bake_scene(const ModelSource& source, BakeSummary* summary = nullptr);

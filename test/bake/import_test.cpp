@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 
@@ -126,6 +127,20 @@ TEST_F(Import, RepeatedCollapsedAndBackToBackTrianglesAreLeftOut)
   EXPECT_EQ(surface.mesh.triangles.size(), triangles);
   EXPECT_EQ(surface.mesh.vertices.size(), 8u);
   EXPECT_NEAR(signed_volume(surface.mesh), 1e-6, 1e-12);
+}
+
+TEST_F(Import, AnOpenSurfaceThatIsGivenTwiceKeepsItsBorder)
+{
+  TriangleMesh mesh = box({ 5, 5, 5 }, { 10, 10, 10 });
+  std::vector<bool> keep(mesh.triangles.size(), true);
+  keep[0] = false;
+  mesh = keep_triangles(mesh, keep);
+  const std::size_t triangles = mesh.triangles.size();
+  const LoadedSurface surface = load(together(mesh, mesh));
+  EXPECT_EQ(surface.mesh.triangles.size(), triangles);
+  const auto holes = find_holes(surface.mesh);
+  ASSERT_EQ(holes.size(), 1u);
+  EXPECT_NEAR(holes[0].length, (20 + std::sqrt(200.0)) * 1e-3, 1e-9);
 }
 
 TEST_F(Import, ATriangleWithoutAreaGivesItsCornerToItsNeighbour)

@@ -253,13 +253,15 @@ TEST(Voxelise, WarnsOfSidesThatDifferOrLieBeforeEachOtherAndOfTissueLargerThanAH
   scene.frame.up = { 0, 0, 1 };
   BakeReport report;
   bake(scene, &report);
-  ASSERT_EQ(report.warnings.size(), 3u);  // the others: a_left is clipped, no node is held
+  ASSERT_EQ(report.warnings.size(), 4u);  // the others: a_left is clipped, no node is held
   EXPECT_EQ(report.warnings[1].find("muscle 'a_left' lies in the tissue with 25 % of its volume, 'a_right' with 100 %"),
             0u)
       << report.warnings[1];
+  EXPECT_EQ(report.warnings[2].find("the surface of muscle 'a_left' has 2.64 cm2, that of 'a_right' 1.68 cm2"), 0u)
+      << report.warnings[2];
   scene.frame.forward = { 0, 1, 0 };
   bake(scene, &report);
-  ASSERT_EQ(report.warnings.size(), 4u);
+  ASSERT_EQ(report.warnings.size(), 5u);
   EXPECT_NE(report.warnings[0].find("'a_left' lies 12 mm from 'a_right', but not to its left"), std::string::npos)
       << report.warnings[0];
   scene = plain_scene(0.1);
@@ -267,6 +269,35 @@ TEST(Voxelise, WarnsOfSidesThatDifferOrLieBeforeEachOtherAndOfTissueLargerThanAH
   scene.volumes = { volume_inside("tissue", { "block" }, "fat", true) };
   bake(scene, &report);
   EXPECT_NE(report.warnings[0].find("more than a head"), std::string::npos) << report.warnings[0];
+  scene.surfaces[0].shape->size[0] = 1;
+  EXPECT_NE(fault_of(scene).find("more than a head"), std::string::npos);
+}
+
+TEST(Voxelise, WarnsOfASideThatIsUsedTwiceAndOfConstraintsThatHoldAllOrNothing)
+{
+  Scene scene = plain_scene(1e-3);
+  scene.surfaces = { box_surface("block", { 0, 0, 0 }, { 20e-3, 40e-3, 12e-3 }),
+                     box_surface("a_left", { 0, 12.5e-3, 0 }, { 6e-3, 8e-3, 6e-3 }),
+                     box_surface("a_right", { 0, 12e-3, 0 }, { 6e-3, 8e-3, 6e-3 }),
+                     box_surface("b_left", { 0, 12e-3, 3e-3 }, { 6e-3, 4e-3, 6e-3 }),
+                     box_surface("b_right", { 0, -12e-3, 3e-3 }, { 6e-3, 4e-3, 6e-3 }) };
+  scene.volumes = { volume_inside("tissue", { "block" }, "fat", true) };
+  SceneConstraint all;
+  all.name = "all";
+  all.surfaces = { "block" };
+  all.within = 0.1;
+  scene.constraints = { all, all };
+  scene.constraints[1].name = "none";
+  scene.frame.forward = { 1, 0, 0 };
+  scene.frame.up = { 0, 0, 1 };
+  BakeReport report;
+  bake(scene, &report);
+  ASSERT_EQ(report.warnings.size(), 3u);
+  EXPECT_NE(report.warnings[0].find("'a_right' lie on the left side of the face frame, 0.5 mm apart"),
+            std::string::npos)
+      << report.warnings[0];
+  EXPECT_NE(report.warnings[1].find("constraints hold every node"), std::string::npos) << report.warnings[1];
+  EXPECT_NE(report.warnings[2].find("constraint 'none': holds no node"), std::string::npos) << report.warnings[2];
 }
 
 TEST(Voxelise, SameBytesFromRunToRun)

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -111,27 +112,35 @@ std::string cut_off_ply(const std::string& file)
       announced, found);
 }
 
-/// What is wrong with vertices of text whose numbers have a decimal comma, or an empty text. Importers take 10,5
-/// for 10. `vertex`: word before the coordinates in a line.
-std::string decimal_comma(const std::string& file, const std::string& vertex)
+/// What is wrong with vertices of text, or an empty text. Importers take 10,5 for 10, and leave out vertices that they
+/// cannot read, so that faces get the corners of others. `vertex`: word before the coordinates in a line.
+std::string unreadable_vertex(const std::string& file, const std::string& vertex)
 {
-  constexpr int looked_at = 1000;  // vertices; a program writes all of them in one way
   std::ifstream stream(file);
-  int number = 0, vertices = 0;
-  for (std::string line; vertices < looked_at && std::getline(stream, line);)
+  int number = 0;
+  for (std::string line; std::getline(stream, line);)
   {
     ++number;
-    std::istringstream words(line);
-    if (std::string word; !(words >> word) || word != vertex)
+    const std::size_t begin = line.find_first_not_of(" \t");
+    const std::size_t end = begin == std::string::npos ? begin : begin + vertex.size();
+    if (begin == std::string::npos || line.compare(begin, vertex.size(), vertex) != 0 || end >= line.size() ||
+        std::isspace(static_cast<unsigned char>(line[end])) == 0 || line.back() == '\\')
       continue;
-    ++vertices;
+    line.erase(std::min(line.size(), line.find('\r')));
     if (line.find(',') != std::string::npos)
-    {
-      line.erase(std::min(line.size(), line.find('\r')));
       return fmt::format(
           "line {} has numbers with a comma ('{}'); they must have a decimal point, as in 10.5: export it "
           "again, or replace the commas",
           number, line);
+    const char* at = line.c_str() + end;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      char* after = nullptr;
+      std::strtod(at, &after);
+      if (after == at)
+        return fmt::format("line {} must have three coordinates ('{}'): export it again, or correct the line", number,
+                           line);
+      at = after;
     }
   }
   return {};
@@ -171,7 +180,7 @@ TriangleMesh import_mesh(const std::string& file, double unit)
   const std::string extension = in_lower_case(std::filesystem::path(file).extension().string());
   std::string fault = extension == ".ply" ? cut_off_ply(file) : extension == ".stl" ? cut_off_stl(file) : "";
   if (fault.empty() && (extension == ".obj" || extension == ".stl"))
-    fault = decimal_comma(file, extension == ".obj" ? "v" : "vertex");
+    fault = unreadable_vertex(file, extension == ".obj" ? "v" : "vertex");
   if (!fault.empty())
     throw Error("mesh file " + file + ": " + fault);
   Assimp::Importer importer;

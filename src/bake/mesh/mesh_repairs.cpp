@@ -13,10 +13,11 @@ namespace
 
 using Point = CGAL::Exact_predicates_inexact_constructions_kernel::Point_3;
 
-void remove_repeated_triangles(TriangleMesh& mesh, MeshRepairs& repairs)
+// Triangles with the same corners and opposite orientations cancel each other. Of equal triangles that remain, one is
+// kept. `oriented`: whether orientations are consistent already. If not, only triangles that are equal, and have no
+// opposite one, are removed.
+void remove_repeated_triangles(TriangleMesh& mesh, bool oriented, MeshRepairs& repairs)
 {
-  // Triangles with the same corners and opposite orientations cancel each other. Of equal triangles that remain, one is
-  // kept.
   std::map<Triangle, std::array<std::vector<std::size_t>, 2>> alike;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
   {
@@ -30,6 +31,8 @@ void remove_repeated_triangles(TriangleMesh& mesh, MeshRepairs& repairs)
   for (const auto& [corners, by_orientation] : alike)
   {
     const std::size_t pairs = std::min(by_orientation[0].size(), by_orientation[1].size());
+    if (pairs > 0 && !oriented)
+      continue;
     for (const auto& triangles : by_orientation)
       for (std::size_t i = 0; i < triangles.size(); ++i)
       {
@@ -121,8 +124,10 @@ MeshRepairs repair_mesh(TriangleMesh& mesh)
 {
   MeshRepairs repairs;
   repairs.collapsed = join_vertices(mesh);
+  // A surface that was exported twice would be oriented as two sheets, back to back along its border.
+  remove_repeated_triangles(mesh, false, repairs);
   repairs.turned = make_orientation_consistent(mesh);
-  remove_repeated_triangles(mesh, repairs);
+  remove_repeated_triangles(mesh, true, repairs);
   remove_flat_triangles(mesh, repairs);
   return repairs;
 }

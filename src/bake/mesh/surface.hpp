@@ -63,6 +63,10 @@ TriangleMesh join_surfaces(const std::vector<const PreparedSurface*>& parts);
 /// Reads a mesh file of any format known to assimp, with coordinates in `unit` [m]. Throws Error naming the file.
 TriangleMesh import_mesh(const std::string& file, double unit);
 
+/// Throws Error if a line of this length [m] on a shape has more than 1000 edges: finer shapes have tens of millions of
+/// triangles.
+void check_edges(double edge, double length);
+
 /// Closed mesh, with outward normals, of a built-in shape whose kind needs no other surface or template (box to torus).
 /// Throws Error on impossible sizes.
 TriangleMesh make_shape(const Shape& shape);

@@ -14,6 +14,12 @@ void write_surfaces(const Scene& scene, const std::string& folder)
 {
   std::error_code ignored;
   std::filesystem::create_directories(folder, ignored);
+  const auto path_of = [&folder](const Surface& surface)
+  { return (std::filesystem::path(folder) / (surface.name + ".obj")).string(); };
+  for (const Surface& written : scene.surfaces)
+    for (const Surface& given : scene.surfaces)
+      if (!given.file.empty() && std::filesystem::equivalent(path_of(written), given.file, ignored))
+        throw Error(path_of(written) + ": is a mesh of the scene; surfaces must be written to another folder");
   const Scene moved = following_head(scene);
   for (const Surface& surface : moved.surfaces)
   {
@@ -26,7 +32,7 @@ void write_surfaces(const Scene& scene, const std::string& folder)
     {
       throw Error(place_in_scene(scene, "surface", surface) + ": " + error.what());
     }
-    const std::string path = (std::filesystem::path(folder) / (surface.name + ".obj")).string();
+    const std::string path = path_of(surface);
     std::ofstream file(path);
     for (const Vector3& p : mesh.vertices)
       file << fmt::format("v {:.6f} {:.6f} {:.6f}\n", p[0], p[1], p[2]);

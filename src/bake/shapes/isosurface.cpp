@@ -1,5 +1,7 @@
 #include "bake/shapes/isosurface.hpp"
 
+#include "bake/mesh/surface.hpp"
+
 #include <map>
 
 namespace frontalis
@@ -169,6 +171,7 @@ private:
 TriangleMesh isosurface(const std::function<double(const Vector3d&)>& f, const Box& box, double edge, bool mirrored,
                         double error)
 {
+  check_edges(edge, box.sizes().maxCoeff());
   TriangleMesh mesh = Marching(f, box, edge, mirrored, error).surface();
   if (mirrored)
   {

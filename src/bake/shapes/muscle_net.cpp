@@ -1,5 +1,7 @@
 #include "bake/shapes/muscle_net.hpp"
 
+#include "bake/mesh/surface.hpp"
+
 namespace frontalis
 {
 namespace
@@ -146,7 +148,11 @@ TriangleMesh net_surface(const ControlNet& net, double edge, bool closed)
                  .norm();
     return sum;
   };
-  const auto parts = [&](double l) { return 2 * std::max(1, static_cast<std::int32_t>(std::ceil(0.5 * l / edge))); };
+  const auto parts = [&](double l)
+  {
+    check_edges(edge, l);
+    return 2 * std::max(1, static_cast<std::int32_t>(std::ceil(0.5 * l / edge)));
+  };
   const std::int32_t n = std::max(net.ring ? 12 : 2, parts(length({ 0, 0.5, 0 }, { 1, 0.5, 0 })));
   const std::int32_t m = parts(std::max(length({ 0.5, 0, 0 }, { 0.5, 1, 0 }), length({ 0, 0, 0 }, { 0, 1, 0 })));
   const auto place = [&](std::int32_t i, std::int32_t j, std::int32_t k)

@@ -119,18 +119,22 @@ void require(bool good, const std::string& what)
 
 }  // namespace
 
+void check_edges(double edge, double length)
+{
+  constexpr double most_edges = 1000;
+  if (length > most_edges * edge)
+    throw Error(
+        fmt::format("'edge' is {:.3g} mm for a shape {:.3g} mm long or around; at most {} edges are possible: use "
+                    "a longer one, or check the scene's 'unit'",
+                    1e3 * edge, 1e3 * length, most_edges));
+}
+
 TriangleMesh make_shape(const Shape& shape)
 {
   const Vector3& s = shape.size;
-  // Finer shapes would have tens of millions of triangles.
-  constexpr double most_edges = 1000;
-  const double longest = std::max(
-      { s[0], s[1], s[2], shape.length, 2 * pi * (std::max(shape.radius, 0.0) + std::max(shape.minor_radius, 0.0)) });
-  if (shape.edge > 0 && longest > most_edges * shape.edge)
-    throw Error(
-        fmt::format("'edge' is {:.3g} mm for a shape {:.3g} mm long or around; at most {} edges are possible: use "
-                    "a longer one",
-                    1e3 * shape.edge, 1e3 * longest, most_edges));
+  if (shape.edge > 0)
+    check_edges(shape.edge, std::max({ s[0], s[1], s[2], shape.length,
+                                       2 * pi * (std::max(shape.radius, 0.0) + std::max(shape.minor_radius, 0.0)) }));
   switch (shape.kind)
   {
     case Shape::Kind::box:

@@ -93,11 +93,18 @@ void weaken_muscles(const Scene& scene, const LocalFrame& frame, Model& model, B
 void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const std::vector<MuscleFibres>& fibres,
                     const LocalFrame& frame, Model& model, BakeMonitor& monitor);
 
+/// Nodes at an end of a muscle.
+struct MuscleEndNodes
+{
+  std::vector<std::size_t> nodes;
+  bool at_origin;  ///< of the end at which the coordinate along the fibres begins
+};
+
 /// Chooses among the nodes `near` a bone those at which a muscle originates. They are corners of the muscle's voxels in
 /// one of its ends, which are 15 % of the fibres' length: the origin where it is known and has near nodes, otherwise
 /// the end with the larger proportion of near nodes. Empty if neither end has a near node.
-std::vector<std::size_t> origin_nodes(std::size_t muscle, const MuscleFibres& fibres, const std::vector<bool>& near,
-                                      const LocalFrame& frame, const Model& model);
+MuscleEndNodes origin_nodes(std::size_t muscle, const MuscleFibres& fibres, const std::vector<bool>& near,
+                            const LocalFrame& frame, const Model& model);
 
 /// Whether a constraint attaches tissue at its surfaces: with `boundary: true`, without friction, and without a
 /// `within` of its own, which restricts the nodes themselves. It does so too where the effect `attachment` is switched

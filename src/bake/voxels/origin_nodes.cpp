@@ -9,8 +9,8 @@ constexpr double end_share = 0.15;  // length of a muscle's end divided by that 
 
 }  // namespace
 
-std::vector<std::size_t> origin_nodes(std::size_t muscle, const MuscleFibres& fibres, const std::vector<bool>& near,
-                                      const LocalFrame& frame, const Model& model)
+MuscleEndNodes origin_nodes(std::size_t muscle, const MuscleFibres& fibres, const std::vector<bool>& near,
+                            const LocalFrame& frame, const Model& model)
 {
   std::vector<std::pair<std::size_t, double>> voxels;  // voxels of the muscle, with their coordinates along the fibres
   double first = 1e300, last = -1e300;
@@ -35,10 +35,11 @@ std::vector<std::size_t> origin_nodes(std::size_t muscle, const MuscleFibres& fi
             ends[end].push_back(node);
         }
   if (fibres.from_origin && !ends[0].empty())
-    return ends[0];
+    return { ends[0], true };
   // Fractions are compared, not numbers, because the other end may be wider and so have more nodes near the bone.
   const auto share = [&](int end) { return static_cast<double>(ends[end].size()) / corners[end]; };
-  return share(0) >= share(1) ? ends[0] : ends[1];
+  const int end = share(0) >= share(1) ? 0 : 1;
+  return { ends[end], end == 0 };
 }
 
 }  // namespace frontalis

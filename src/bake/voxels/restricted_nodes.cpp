@@ -187,13 +187,18 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
     for (const std::string& name : constraint.of)
     {
       const auto m = static_cast<std::size_t>(index_of(scene.muscles, name, place, "muscle"));
-      const std::vector<std::size_t> origin = origin_nodes(m, fibres[m], near, frame, model);
-      if (origin.empty())
+      const MuscleEndNodes origin = origin_nodes(m, fibres[m], near, frame, model);
+      if (origin.nodes.empty())
         throw failure(
             "{}: of: neither end of muscle '{}' lies within {} of these surfaces inside the crop; check the "
             "muscle's origin and 'within'",
             place, name, length_text(finder.reach_of(constraint.within), scene.unit));
-      for (const std::size_t n : origin)
+      if (fibres[m].from_origin && !origin.at_origin)
+        monitor.warn(
+            "{}: of: muscle '{}' is held at its insertion, because its origin is farther than {} from these surfaces; "
+            "check the place of the muscle",
+            place, name, length_text(finder.reach_of(constraint.within), scene.unit));
+      for (const std::size_t n : origin.nodes)
         held[n] = true;
     }
     for (std::size_t n = 0; n < nodes; ++n)
@@ -314,6 +319,15 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
       model.sliding.push_back(
           { node, of, level_at(model.constraint_surfaces[of].field, rest_position(model, node)), constraint });
   }
+  if (model.rigid.size() == nodes)
+    monitor.warn("{}: constraints hold every node, so that nothing can move; check their surfaces and 'within'",
+                 scene.file);
+  for (std::size_t c = 0; c < scene.constraints.size(); ++c)
+    if (scene.constraints[c].restricts_nodes() &&
+        std::none_of(restrictions.begin(), restrictions.end(),
+                     [c](const Restriction& of) { return of.constraint == static_cast<std::int32_t>(c); }))
+      monitor.warn("{}: holds no node, because other constraints hold all nodes near its surfaces",
+                   place_in_scene(scene, "constraint", scene.constraints[c]));
 }
 
 }  // namespace frontalis
