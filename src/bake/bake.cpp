@@ -23,9 +23,10 @@ namespace
 constexpr double least_in_tissue = 0.4;   // share of a muscle's volume below which its place is doubtful
 constexpr double least_of_muscle = 0.05;  // and below which the bake ends
 constexpr double sides_differ = 1.3;      // ratio of these shares of a muscle and its counterpart above which it warns
-constexpr double areas_differ = 1.5;      // ratio of the areas of their surfaces above which it warns
+constexpr double sizes_differ = 1.6;      // ratio of their sizes, in tissue or not, above which it warns
 constexpr double largest_tissue = 0.6;    // [m]
-// Sizes that no face has: surfaces and distances around them would take all memory.
+// Beyond these sizes tissue that would have the size of a face in another unit is an error: its distances from bones,
+// at every half millimetre, would take all memory.
 constexpr double impossible_tissue[2] = { 1e-3, 0.9 };  // [m]
 constexpr std::size_t few_voxels = 100;                 // with fewer, the unit or the voxel is probably wrong
 
@@ -102,7 +103,7 @@ std::string check_size(const Scene& scene, const Volumes& volumes, BakeMonitor& 
   const std::string text =
       fmt::format("{}: the tissue spans {}, {} than a {}; check 'unit'{}", scene.file, box_text(tissue, scene.unit),
                   large ? "more" : "less", large ? "head" : "millimetre", advice.empty() ? "" : ": " + advice);
-  if (extent < impossible_tissue[0] || extent > impossible_tissue[1])
+  if (!advice.empty() && (extent < impossible_tissue[0] || extent > impossible_tissue[1]))
     return text;
   if (large)
     monitor.warn("{}", text);
@@ -112,8 +113,12 @@ std::string check_size(const Scene& scene, const Volumes& volumes, BakeMonitor& 
 /// Throws Error if a volume lies outside the tissue, and reports how much of each muscle was clipped.
 void check_volumes(const Scene& scene, const Volumes& volumes, const Voxels& voxels, BakeMonitor& monitor)
 {
-  std::map<std::string, double> in_tissue;  // share of a muscle's volume
-  std::map<std::string, double> area;       // of its surface [m2]
+  struct Size
+  {
+    double in_tissue = 0, volume = 0, area = 0;  // the first is a share of the volume
+    bool closed = true;
+  };
+  std::map<std::string, Size> muscles;
   for (std::size_t v = 0; v < volumes.entries().size(); ++v)
   {
     const Volumes::Entry& entry = volumes.entries()[v];
@@ -137,18 +142,17 @@ void check_volumes(const Scene& scene, const Volumes& volumes, const Voxels& vox
                                  box_text(volumes.tissue_box(), scene.unit));
     if (muscle.empty() || entry.closed_by || entry.inside.empty())
       continue;
-    double whole = 0;
+    double whole = 0, area = 0;
     bool closed = true;
     for (const std::size_t b : entry.inside)
     {
-      area[scene.muscles[entry.muscle].name] += surface_area(volumes.body(b).mesh());
+      area += surface_area(volumes.body(b).mesh());
       whole += signed_volume(volumes.body(b).mesh());
       closed = closed && volumes.body(b).closed();
     }
     monitor.found("{}: {:.4g} cm3 in the tissue, {:.4g} cm3 by its surface ({:.0f} % clipped){}", muscle, 1e6 * size,
                   1e6 * whole, 100 * std::max(0.0, 1 - size / whole), closed ? "" : "; the surface is open");
-    if (closed)
-      in_tissue[scene.muscles[entry.muscle].name] = size / whole;
+    muscles[scene.muscles[entry.muscle].name] = { size / whole, whole, area, closed };
     if (closed && size < least_of_muscle * whole)
       throw failure(
           "{}: {} lies in the tissue with only {:.2g} % of its volume; the rest, between {}, is in bone, outside "
@@ -160,29 +164,28 @@ void check_volumes(const Scene& scene, const Volumes& volumes, const Voxels& vox
           "cut off by a depth or crop: see the table of muscles that --report prints, and check the surface",
           muscle, 100 * size / whole, box_text(extent, scene.unit));
   }
-  const auto compare = [](const std::map<std::string, double>& values, double ratio, const auto& tell)
+  const auto differ = [](double a, double b, double ratio) { return std::max(a, b) > ratio * std::min(a, b); };
+  for (const auto& [name, here] : muscles)
   {
-    for (const auto& [name, here] : values)
-      if (const auto other = counterpart(values, name);
-          other != values.end() && std::max(here, other->second) > ratio * std::min(here, other->second))
-        tell(name, here, other->first, other->second);
-  };
-  compare(in_tissue, sides_differ,
-          [&](const std::string& name, double here, const std::string& other, double there)
-          {
-            monitor.warn(
-                "muscle '{}' lies in the tissue with {:.0f} % of its volume, '{}' with {:.0f} %: the face will move "
-                "more on one side; check both surfaces",
-                name, 100 * here, other, 100 * there);
-          });
-  compare(area, areas_differ,
-          [&](const std::string& name, double here, const std::string& other, double there)
-          {
-            monitor.warn(
-                "the surface of muscle '{}' has {:.3g} cm2, that of '{}' {:.3g} cm2: the face will move more on one "
-                "side; check whether one is incomplete or belongs to both sides",
-                name, 1e4 * here, other, 1e4 * there);
-          });
+    const auto other = counterpart(muscles, name);
+    if (other == muscles.end())
+      continue;
+    const Size& there = other->second;
+    const bool closed = here.closed && there.closed;
+    if (closed && differ(here.in_tissue, there.in_tissue, sides_differ))
+      monitor.warn(
+          "muscle '{}' lies in the tissue with {:.0f} % of its volume, '{}' with {:.0f} %: the face will move "
+          "more on one side; check both surfaces",
+          name, 100 * here.in_tissue, other->first, 100 * there.in_tissue);
+    // The volume of an open surface is not known.
+    if (closed ? differ(here.volume, there.volume, sizes_differ) : differ(here.area, there.area, sizes_differ))
+      monitor.warn(
+          "muscle '{}' has {:.3g} {}, '{}' {:.3g} {}: the face will move more on one side; check whether one surface "
+          "is "
+          "incomplete or belongs to both sides",
+          name, closed ? 1e6 * here.volume : 1e4 * here.area, closed ? "cm3" : "cm2 of surface", other->first,
+          closed ? 1e6 * there.volume : 1e4 * there.area, closed ? "cm3" : "cm2");
+  }
 }
 
 /// Greatest depth of a volume's points below a surface [m], estimated from 4000 points.
@@ -249,7 +252,7 @@ Model bake(const Scene& given, BakeReport* report, const BakeProgress& progress)
   const Volumes volumes(scene, surfaces, sample_spacing);
   check_openings(scene, volumes);
   const std::string impossible = check_size(scene, volumes, monitor);
-  const Grid grid = make_grid(scene, volumes);
+  const Grid grid = make_grid(scene, volumes);  // its message, if it has one, says more
   if (!impossible.empty())
     throw Error(impossible);
   find_surfaces_apart(scene, volumes, monitor);

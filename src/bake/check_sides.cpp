@@ -2,6 +2,7 @@
 
 #include "bake/messages.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace frontalis
@@ -15,14 +16,29 @@ struct Thing
   Box box;
 };
 
+/// Where the middles of most pairs lie along `left` [m]: their median, 0 without pairs.
+double middle_of_pairs(const std::map<std::string, Thing>& things, const Vector3d& left)
+{
+  std::vector<double> middles;
+  for (const auto& [name, thing] : things)
+    if (const auto other = counterpart(things, name); other != things.end())
+      middles.push_back(0.5 * left.dot(thing.box.center() + other->second.box.center()));
+  if (middles.empty())
+    return 0;
+  const auto median = middles.begin() + static_cast<std::ptrdiff_t>(middles.size() / 2);
+  std::nth_element(middles.begin(), median, middles.end());
+  return *median;
+}
+
 /// Examines things by their names; those without a counterpart are ignored.
 void check_pairs(const Scene& scene, const std::map<std::string, Thing>& things, BakeMonitor& monitor)
 {
   constexpr double least_distance = 1e-3;  // [m]
   constexpr double clear = 0.5;            // cosine; axes of a scene without 'frame' may lie in any direction
   const Vector3d left = to_vector(scene.frame.up).cross(to_vector(scene.frame.forward)).normalized();
-  const Vector3d middle = to_vector(scene.frame.origin);
-  std::size_t pairs = 0, exchanged = 0, across = 0, on_one_side = 0;
+  constexpr std::size_t enough_pairs = 3;  // from which their middle is that of the face, even if one pair is wrong
+  const double middle = middle_of_pairs(things, left);
+  std::size_t pairs = 0, exchanged = 0, across = 0;
   std::string first, first_across, first_on_one_side;
   for (const auto& [name, thing] : things)
   {
@@ -37,10 +53,10 @@ void check_pairs(const Scene& scene, const std::map<std::string, Thing>& things,
           "{} lies where '{}' does; give each its own data, or use one of them, named without a side, for both",
           thing.place, other->first);
     // Of a mirrored surface that is used twice, both lie on one side, if not exactly in one place.
-    const double here = left.dot(thing.box.center() - middle), opposite = left.dot(there.center() - middle);
-    if (here * opposite > 0 && std::min(std::abs(here), std::abs(opposite)) > 2 * apart.norm() && on_one_side++ == 0)
-      first_on_one_side = fmt::format("{} and '{}' lie on the {} side of the face frame, {} apart", thing.place,
-                                      other->first, here > 0 ? "left" : "right", length_text(apart.norm(), scene.unit));
+    const double here = left.dot(thing.box.center()) - middle, opposite = left.dot(there.center()) - middle;
+    if (first_on_one_side.empty() && std::min(std::abs(here), std::abs(opposite)) > 2 * apart.norm())
+      first_on_one_side = fmt::format("{} and '{}' lie on the {} side of the face, {} apart", thing.place, other->first,
+                                      here > 0 ? "left" : "right", length_text(apart.norm(), scene.unit));
     if (apart.norm() > least_distance && std::abs(left.dot(apart)) < clear * apart.norm() && across++ == 0)
       first_across =
           fmt::format("{} lies {} from '{}'", thing.place, length_text(apart.norm(), scene.unit), other->first);
@@ -57,8 +73,7 @@ void check_pairs(const Scene& scene, const std::map<std::string, Thing>& things,
                         "not those of the data"
                       : "exchange their names or files; if all bones or all muscles are exchanged, their data are "
                         "mirrored or turned, as between the axes LPS and RAS of medical images");
-  // If all pairs do, the origin of the frame is elsewhere.
-  if (on_one_side > 0 && on_one_side < pairs)
+  if (!first_on_one_side.empty() && pairs >= enough_pairs)
     monitor.warn("{}: one of them is probably mirrored or used for both sides", first_on_one_side);
   if (pairs > 0 && across == pairs)
     monitor.warn(

@@ -24,23 +24,6 @@ struct BakeOptions
   bool report = false;
 };
 
-// Throws Error, before a long bake, if its result could not be written or would replace something else than a model.
-void check_output(const BakeOptions& options)
-{
-  if (options.output.empty())
-    throw WrongUsage("--output: must be the path of a model file (.vtkhdf)");
-  const std::filesystem::path folder = std::filesystem::absolute(options.output).parent_path();
-  std::error_code ignored;
-  if (!std::filesystem::is_directory(folder, ignored))
-    throw Error(options.output + ": no folder '" + folder.string() + "' to write it in; must exist");
-  if (std::filesystem::is_directory(options.output, ignored))
-    throw Error(options.output + ": is a folder; must be the path of a model file (.vtkhdf)");
-  if (std::filesystem::exists(options.output, ignored) && !std::filesystem::is_regular_file(options.output, ignored))
-    throw Error(options.output + ": is no regular file; must be the path of a model file (.vtkhdf)");
-  if (std::filesystem::file_size(options.output, ignored) > 0 && !ignored && !begins_as_model(options.output))
-    throw Error(options.output + ": exists and is no model; must be a new file or a model to replace");
-}
-
 // Prints the number and name of each constraint, and how many nodes it restricts.
 void print_constraints(const Model& model)
 {
@@ -55,7 +38,7 @@ void print_constraints(const Model& model)
 
 void bake_to_file(const BakeOptions& options)
 {
-  check_output(options);
+  check_model_output(options.output);
   if (is_model_file(options.source.path) && std::filesystem::exists(options.source.path))
     throw Error(options.source.path + ": is already a baked model; must be a scene (YAML)");
   const double begin = wall_seconds();

@@ -213,13 +213,16 @@ void check_list(const std::string& list, int first)
     next = std::max(next, frame.get<int>() + 1);
   }
   if (next > first)
-    throw Error(fmt::format("{}: has frame {} already; --first must be {} or more", list, next - 1, next));
+    throw Error(fmt::format("{}: has frame {} already; --first must be {} or more, or the folder another one", list,
+                            next - 1, next));
   std::filesystem::resize_file(list, size);
 }
 
 void write_dataset(const DatasetOptions& options)
 {
   camera_with(options.size[0], options.size[1], 1);  // throws Error on wrong sizes before anything is written
+  const std::string description_file = options.folder + "/dataset.json", list = options.folder + "/frames.jsonl";
+  check_list(list, options.first);
   const auto model = std::make_shared<const Model>(obtain_model(options.source));
   if (model->action_units.empty())
     throw Error(options.source.path + ": has no action units, of which expressions are mixed (key `action_units`)");
@@ -227,14 +230,8 @@ void write_dataset(const DatasetOptions& options)
                           { "seconds", options.seconds },      { "width", options.size[0] },
                           { "height", options.size[1] },       { "depth_unit_m", depth_unit },
                           { "labels", label_names() } };
-  const std::string description_file = options.folder + "/dataset.json", list = options.folder + "/frames.jsonl";
   if (options.first > 0)
-  {
     check_same(description_file, description);
-    check_list(list, options.first);
-  }
-  else if (std::error_code ignored; std::filesystem::file_size(list, ignored) > 0 && !ignored)
-    throw Error(list + ": exists; --first continues it, and a new data set must have another folder");
   make_folder(options.folder);
   write_text(description_file, json_text(description));
   std::ofstream lines(list, options.first > 0 ? std::ios::app : std::ios::trunc);

@@ -124,7 +124,7 @@ ControlCurve read_control_curve(const std::string& path, const Model& model)
   const auto& header = table.header();
   if (header[0] != "time")
     throw Error(path + ":1: the first column must be called time" +
-                (header.size() == 1 && header[0].find_first_of(";\t\"") != std::string::npos
+                (header[0].find_first_of(";\t\"") != std::string::npos
                      ? ", and commas must separate columns: export the table with commas, without quotation marks"
                      : ""));
   ControlCurve curve{ { 0 }, { row_controls(model, header, std::vector<double>(header.size(), 0), path + ":1: ") } };

@@ -12,7 +12,7 @@
 #endif
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <filesystem>
 #include <fstream>
@@ -33,11 +33,8 @@ void add_scene_options(CLI::App& command, ModelSource& source)
 bool is_model_file(const std::string& path)
 {
   const std::string extension = std::filesystem::path(path).extension().string();
-  return extension == ".vtkhdf" || extension == ".h5" || extension == ".hdf5" || begins_as_model(path);
-}
-
-bool begins_as_model(const std::string& path)
-{
+  if (extension == ".vtkhdf" || extension == ".h5" || extension == ".hdf5")
+    return true;
   // The first eight bytes of every HDF5 file.
   const std::string signature = "\x89HDF\r\n\x1a\n";
   std::string begin(signature.size(), '\0');
@@ -45,12 +42,30 @@ bool begins_as_model(const std::string& path)
   return file.read(begin.data(), static_cast<std::streamsize>(begin.size())) && begin == signature;
 }
 
+void check_model_output(const std::string& path)
+{
+  if (path.empty())
+    throw WrongUsage("--output: must be the path of a model file (.vtkhdf)");
+  const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(folder, ignored))
+    throw Error(path + ": no folder '" + folder.string() + "' to write it in; must exist");
+  if (!std::filesystem::exists(path, ignored))
+    return;
+  if (std::filesystem::is_directory(path, ignored))
+    throw Error(path + ": is a folder; must be the path of a model file (.vtkhdf)");
+  if (!std::filesystem::is_regular_file(path, ignored))
+    throw Error(path + ": is no regular file; must be the path of a model file (.vtkhdf)");
+  if (std::filesystem::file_size(path, ignored) > 0 && !has_model(path))
+    throw Error(path + ": exists and is no model; must be a new file or a model to replace");
+}
+
 #ifdef FRONTALIS_WITH_BAKE
 
 namespace
 {
 
-// The file beside a cached model with the warnings of its bake, one per line.
+// The file beside a cached model with the warnings of its bake, one per line; empty without warnings.
 std::string warnings_beside(const std::string& path) { return path + ".warnings"; }
 
 // The cached model with the given hash of its scene, if it is usable, and the warnings of its bake. `told` receives a
@@ -63,10 +78,12 @@ std::optional<Model> cached_model(const std::string& path, const std::string& ha
   try
   {
     Model model = read_model_of(path, hash);
-    told = "taken from " + path;
     std::ifstream file(warnings_beside(path));
+    if (!file)
+      throw Error(warnings_beside(path) + " is missing");
     for (std::string line; std::getline(file, line);)
       warnings.push_back(line);
+    told = "taken from " + path;
     return model;
   }
   catch (const Error& error)
@@ -85,9 +102,11 @@ void keep_in_cache(const Model& model, const std::vector<std::string>& warnings,
   try
   {
     std::filesystem::create_directories(std::filesystem::path(path).parent_path());
-    std::filesystem::remove(warnings_beside(path));
-    if (!warnings.empty())
-      std::ofstream(warnings_beside(path)) << fmt::format("{}\n", fmt::join(warnings, "\n"));
+    std::ofstream file(warnings_beside(path));
+    for (const std::string& warning : warnings)
+      file << warning << '\n';
+    if (!file.flush())
+      throw Error(warnings_beside(path) + " cannot be written");
     write_model(model, path);
     told += "kept as " + path;
   }

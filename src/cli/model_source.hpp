@@ -43,8 +43,9 @@ void add_scene_options(CLI::App& command, ModelSource& source);
 
 /// Whether a file is a baked model: by its extension (.vtkhdf, .h5, .hdf5) or the signature of HDF5 at its beginning.
 bool is_model_file(const std::string& path);
-/// Whether a file begins with the signature of HDF5.
-bool begins_as_model(const std::string& path);
+/// Throws Error, before long work, if a model could not be written to this path or would replace something else than a
+/// model or an empty file.
+void check_model_output(const std::string& path);
 
 /// Reads a scene and bakes it, and shows the progress. Throws Error, Interrupted.
 Model bake_scene(const ModelSource& source, BakeSummary* summary = nullptr);

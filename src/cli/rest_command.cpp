@@ -74,6 +74,7 @@ Vectors posed(PosedFace& face, const Model& model, const std::string& pose, doub
 
 void change_rest(const RestOptions& options)
 {
+  check_model_output(options.file);
   if (options.creases.empty() == (options.set > 0))
     throw WrongUsage("--creases goes with --set, the part of the folds that stays");
   if (options.creases.empty() && !options.neutral)

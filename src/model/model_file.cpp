@@ -118,6 +118,18 @@ void write_model(const Model& model, const std::string& name)
   }
 }
 
+bool has_model(const std::string& path)
+{
+  try
+  {
+    return Hdf5File::open(path).attribute(root, "model_file_version", -1) >= 0;
+  }
+  catch (const Error&)
+  {
+    return false;
+  }
+}
+
 Model read_model(const std::string& path) { return read(path, nullptr); }
 
 Model read_model_of(const std::string& path, const std::string& scene_hash) { return read(path, &scene_hash); }

@@ -257,8 +257,7 @@ TEST(Voxelise, WarnsOfSidesThatDifferOrLieBeforeEachOtherAndOfTissueLargerThanAH
   EXPECT_EQ(report.warnings[1].find("muscle 'a_left' lies in the tissue with 25 % of its volume, 'a_right' with 100 %"),
             0u)
       << report.warnings[1];
-  EXPECT_EQ(report.warnings[2].find("the surface of muscle 'a_left' has 2.64 cm2, that of 'a_right' 1.68 cm2"), 0u)
-      << report.warnings[2];
+  EXPECT_EQ(report.warnings[2].find("muscle 'a_left' has 0.288 cm3, 'a_right' 0.144 cm3"), 0u) << report.warnings[2];
   scene.frame.forward = { 0, 1, 0 };
   bake(scene, &report);
   ASSERT_EQ(report.warnings.size(), 5u);
@@ -269,8 +268,11 @@ TEST(Voxelise, WarnsOfSidesThatDifferOrLieBeforeEachOtherAndOfTissueLargerThanAH
   scene.volumes = { volume_inside("tissue", { "block" }, "fat", true) };
   bake(scene, &report);
   EXPECT_NE(report.warnings[0].find("more than a head"), std::string::npos) << report.warnings[0];
-  scene.surfaces[0].shape->size[0] = 1;
-  EXPECT_NE(fault_of(scene).find("more than a head"), std::string::npos);
+  scene.surfaces[0].shape->size[0] = 1.8;
+  scene.unit = 1e-2;
+  const std::string fault = fault_of(scene);
+  EXPECT_NE(fault.find("more than a head; check 'unit': with 'unit: mm' it would span 180 mm"), std::string::npos)
+      << fault;
 }
 
 TEST(Voxelise, WarnsOfASideThatIsUsedTwiceAndOfConstraintsThatHoldAllOrNothing)
@@ -280,7 +282,9 @@ TEST(Voxelise, WarnsOfASideThatIsUsedTwiceAndOfConstraintsThatHoldAllOrNothing)
                      box_surface("a_left", { 0, 12.5e-3, 0 }, { 6e-3, 8e-3, 6e-3 }),
                      box_surface("a_right", { 0, 12e-3, 0 }, { 6e-3, 8e-3, 6e-3 }),
                      box_surface("b_left", { 0, 12e-3, 3e-3 }, { 6e-3, 4e-3, 6e-3 }),
-                     box_surface("b_right", { 0, -12e-3, 3e-3 }, { 6e-3, 4e-3, 6e-3 }) };
+                     box_surface("b_right", { 0, -12e-3, 3e-3 }, { 6e-3, 4e-3, 6e-3 }),
+                     box_surface("c_left", { 0, 8e-3, 3e-3 }, { 6e-3, 4e-3, 6e-3 }),
+                     box_surface("c_right", { 0, -8e-3, 3e-3 }, { 6e-3, 4e-3, 6e-3 }) };
   scene.volumes = { volume_inside("tissue", { "block" }, "fat", true) };
   SceneConstraint all;
   all.name = "all";
@@ -293,11 +297,15 @@ TEST(Voxelise, WarnsOfASideThatIsUsedTwiceAndOfConstraintsThatHoldAllOrNothing)
   BakeReport report;
   bake(scene, &report);
   ASSERT_EQ(report.warnings.size(), 3u);
-  EXPECT_NE(report.warnings[0].find("'a_right' lie on the left side of the face frame, 0.5 mm apart"),
-            std::string::npos)
+  EXPECT_NE(report.warnings[0].find("'a_right' lie on the left side of the face, 0.5 mm apart"), std::string::npos)
       << report.warnings[0];
   EXPECT_NE(report.warnings[1].find("constraints hold every node"), std::string::npos) << report.warnings[1];
   EXPECT_NE(report.warnings[2].find("constraint 'none': holds no node"), std::string::npos) << report.warnings[2];
+  // The middle of the pairs counts, wherever the origin of the frame is.
+  scene.frame.origin = { 0, 0.12, 0 };
+  scene.surfaces[2] = box_surface("a_right", { 0, -12.5e-3, 0 }, { 6e-3, 8e-3, 6e-3 });
+  bake(scene, &report);
+  EXPECT_EQ(report.warnings.size(), 2u);
 }
 
 TEST(Voxelise, SameBytesFromRunToRun)

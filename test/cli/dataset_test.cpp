@@ -110,7 +110,7 @@ TEST(Dataset, WhatWasWrittenBeforeAnInterruptStaysValidAndIsContinued)
   for (const auto& [arguments, reason] :
        { std::pair{ dataset(cut, { "--first", std::to_string(count - 1) }), "--first must be " + next },
          { dataset(cut, { "--first", next, "--seed", "2" }), std::string("seed is 1") },
-         { dataset(cut, { "--frames", "1" }), std::string("exists; --first continues it") },
+         { dataset(cut, { "--frames", "1" }), "--first must be " + next },
          { too_small, std::string("0 x 48 pixels") } })
   {
     const ProgramResult refused = run_program(arguments);

@@ -87,6 +87,43 @@ TEST(Files, that_are_missing_or_cannot_be_written_are_told)
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
+TEST(Files, that_are_not_the_programs_own_are_not_replaced)
+{
+  const TemporaryFolder folder;
+  const std::string notes = folder / "notes.txt", scene = folder / "scene.yaml", model = folder / "m.vtkhdf";
+  std::ofstream(notes) << "mine";
+  const std::string meshes = std::string(FRONTALIS_SOURCE_DIRECTORY) + "/test/model/bad/";
+  std::filesystem::copy_file(meshes + "box.obj", folder / "body.obj");
+  std::ofstream(scene) << R"(unit: mm
+surfaces: {body: {file: body.obj}}
+volumes: {tissue: {inside: body, material: fat, tissue: true}}
+materials: {fat: {young: 3 kPa, poisson: 0.45, density: 1000}}
+constraints: [{name: held, rigid: body, crop: {upper: [null, null, 1]}}]
+skin: {surface: body}
+accuracy: {draft: {voxel: 2.5}}
+)";
+  const std::string mesh = text_of(folder / "body.obj");
+  for (const std::vector<std::string>& arguments : { std::vector<std::string>{ "bake", scene, "-o", notes },
+                                                     { "rest", scene, "--neutral", "-o", notes },
+                                                     { "bake", scene, "-o", model, "--surfaces", folder.path() } })
+  {
+    const ProgramResult refused = run_program(arguments);
+    EXPECT_EQ(refused.code, 1) << refused.errors;
+    EXPECT_NE(refused.errors.find("must be"), std::string::npos) << refused.errors;
+  }
+  EXPECT_EQ(text_of(notes), "mine");
+  EXPECT_EQ(text_of(folder / "body.obj"), mesh);
+  EXPECT_FALSE(std::filesystem::exists(model));
+  // A model may be replaced, and a cached one has the warnings of its bake.
+  for (int time = 0; time < 2; ++time)
+  {
+    const ProgramResult baked = run_program({ "bake", scene, "-o", model, "--cache", folder / "cache" });
+    EXPECT_EQ(baked.code, 0) << baked.errors;
+    expect_contains(baked.output, time == 0 ? "kept as" : "taken from");
+    expect_contains(baked.output, "warning  ");
+  }
+}
+
 class BadSceneRun : public testing::TestWithParam<std::string>
 {
 };

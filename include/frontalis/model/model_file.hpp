@@ -14,6 +14,9 @@ constexpr int model_file_version = 12;
 /// `path`. Equal models give equal bytes. Throws Error.
 void write_model(const Model& model, const std::string& path);
 
+/// Whether the file is a model, of any version.
+bool has_model(const std::string& path);
+
 /// Reads and checks a model. Throws Error with the path and the fault: a missing or truncated file, another version.
 Model read_model(const std::string& path);
 

@@ -151,7 +151,7 @@ std::vector<MuscleFibres> find_fibres(const Scene& scene, const Volumes& volumes
                    else if (const auto net = made_net(scene, muscle))
                    {
                      fibres[m].volume = volume_of(*net);
-                     fibres[m].from_origin = true;
+                     fibres[m].from_origin = !net->ring;
                    }
                    else
                    {

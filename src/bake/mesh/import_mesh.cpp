@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <clocale>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -116,17 +117,18 @@ std::string cut_off_ply(const std::string& file)
 /// cannot read, so that faces get the corners of others. `vertex`: word before the coordinates in a line.
 std::string unreadable_vertex(const std::string& file, const std::string& vertex)
 {
+  static const locale_t plain = newlocale(LC_ALL_MASK, "C", nullptr);
   std::ifstream stream(file);
   int number = 0;
   for (std::string line; std::getline(stream, line);)
   {
     ++number;
+    line.erase(std::min({ line.size(), line.find('\r'), line.find('#') }));
     const std::size_t begin = line.find_first_not_of(" \t");
     const std::size_t end = begin == std::string::npos ? begin : begin + vertex.size();
-    if (begin == std::string::npos || line.compare(begin, vertex.size(), vertex) != 0 || end >= line.size() ||
-        std::isspace(static_cast<unsigned char>(line[end])) == 0 || line.back() == '\\')
+    if (begin == std::string::npos || line.compare(begin, vertex.size(), vertex) != 0 ||
+        (end < line.size() && std::isspace(static_cast<unsigned char>(line[end])) == 0) || line.back() == '\\')
       continue;
-    line.erase(std::min(line.size(), line.find('\r')));
     if (line.find(',') != std::string::npos)
       return fmt::format(
           "line {} has numbers with a comma ('{}'); they must have a decimal point, as in 10.5: export it "
@@ -136,7 +138,7 @@ std::string unreadable_vertex(const std::string& file, const std::string& vertex
     for (int axis = 0; axis < 3; ++axis)
     {
       char* after = nullptr;
-      std::strtod(at, &after);
+      strtod_l(at, &after, plain);  // numbers have points whatever the locale of the program
       if (after == at)
         return fmt::format("line {} must have three coordinates ('{}'): export it again, or correct the line", number,
                            line);

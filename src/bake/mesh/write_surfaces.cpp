@@ -3,6 +3,7 @@
 #include "bake/mesh/surface.hpp"
 #include "bake/messages.hpp"
 #include "bake/shapes/head/follow_head.hpp"
+#include "frontalis/scene/head_template.hpp"
 
 #include <filesystem>
 #include <fstream>
@@ -16,10 +17,16 @@ void write_surfaces(const Scene& scene, const std::string& folder)
   std::filesystem::create_directories(folder, ignored);
   const auto path_of = [&folder](const Surface& surface)
   { return (std::filesystem::path(folder) / (surface.name + ".obj")).string(); };
+  std::vector<std::string> inputs;
+  for (const Surface& given : scene.surfaces)
+    if (given.shape && given.shape->head)
+      inputs.insert(inputs.end(), given.shape->head->files.begin(), given.shape->head->files.end());
+    else if (!given.file.empty())
+      inputs.push_back(given.file);
   for (const Surface& written : scene.surfaces)
-    for (const Surface& given : scene.surfaces)
-      if (!given.file.empty() && std::filesystem::equivalent(path_of(written), given.file, ignored))
-        throw Error(path_of(written) + ": is a mesh of the scene; surfaces must be written to another folder");
+    for (const std::string& input : inputs)
+      if (std::filesystem::equivalent(path_of(written), input, ignored))
+        throw Error(path_of(written) + ": is a file of the scene; surfaces must be written to another folder");
   const Scene moved = following_head(scene);
   for (const Surface& surface : moved.surfaces)
   {

@@ -1,5 +1,6 @@
 #include "frontalis/bake/forehead_shape.hpp"
 
+#include "bake/mesh/surface.hpp"
 #include "bake/mesh/surface_mesh.hpp"
 #include "bake/messages.hpp"
 
@@ -323,6 +324,7 @@ TriangleMesh make_forehead(const Shape& shape)
   const ForeheadDimensions dimensions = dimensions_of(shape);
   const ForeheadMap map(dimensions);
   const double edge = shape.edge_or_default();
+  check_edges(edge, dimensions.width + 2 * dimensions.margin);
   const SkinGrid grid(map, edge, 0);
   const std::string& part = shape.part;
 

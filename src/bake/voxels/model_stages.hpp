@@ -89,7 +89,8 @@ void weaken_muscles(const Scene& scene, const LocalFrame& frame, Model& model, B
 /// A surface restricts the nodes at most `within` in front of it and at most two voxels behind it. Its front is the
 /// side with most of the tissue that is at most two voxels away. If several constraints apply to a node, rigid takes
 /// precedence over prescribed, and prescribed over sliding; of several rigid constraints the first applies, of several
-/// sliding surfaces the nearest. Throws Error for a constraint that restricts no node.
+/// sliding surfaces the nearest. Throws Error for a constraint near which there is no node. Warns of one that restricts
+/// no node because others do, of tissue of which no node is free, and of muscles that are held at their insertion.
 void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const std::vector<MuscleFibres>& fibres,
                     const LocalFrame& frame, Model& model, BakeMonitor& monitor);
 
@@ -97,12 +98,12 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
 struct MuscleEndNodes
 {
   std::vector<std::size_t> nodes;
-  bool at_origin;  ///< of the end at which the coordinate along the fibres begins
+  bool at_origin = false;  ///< of the end at which the coordinate along the fibres begins
 };
 
 /// Chooses among the nodes `near` a bone those at which a muscle originates. They are corners of the muscle's voxels in
 /// one of its ends, which are 15 % of the fibres' length: the origin where it is known and has near nodes, otherwise
-/// the end with the larger proportion of near nodes. Empty if neither end has a near node.
+/// the end with the larger proportion of near nodes. Without nodes if neither end has a near node.
 MuscleEndNodes origin_nodes(std::size_t muscle, const MuscleFibres& fibres, const std::vector<bool>& near,
                             const LocalFrame& frame, const Model& model);
 

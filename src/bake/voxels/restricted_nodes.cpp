@@ -119,6 +119,14 @@ std::int32_t bone_of(const SceneConstraint& constraint, Model& model)
   return bone;
 }
 
+/// Whether only one constraint holds ends of a muscle. With two, each may hold one end.
+bool named_once(const Scene& scene, const std::string& muscle)
+{
+  const auto names = [&muscle](const SceneConstraint& constraint)
+  { return std::count(constraint.of.begin(), constraint.of.end(), muscle) > 0; };
+  return std::count_if(scene.constraints.begin(), scene.constraints.end(), names) == 1;
+}
+
 }  // namespace
 
 void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const std::vector<MuscleFibres>& fibres,
@@ -193,7 +201,7 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
             "{}: of: neither end of muscle '{}' lies within {} of these surfaces inside the crop; check the "
             "muscle's origin and 'within'",
             place, name, length_text(finder.reach_of(constraint.within), scene.unit));
-      if (fibres[m].from_origin && !origin.at_origin)
+      if (fibres[m].from_origin && !origin.at_origin && named_once(scene, name))
         monitor.warn(
             "{}: of: muscle '{}' is held at its insertion, because its origin is farther than {} from these surfaces; "
             "check the place of the muscle",
@@ -320,13 +328,13 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
           { node, of, level_at(model.constraint_surfaces[of].field, rest_position(model, node)), constraint });
   }
   if (model.rigid.size() == nodes)
-    monitor.warn("{}: constraints hold every node, so that nothing can move; check their surfaces and 'within'",
+    monitor.warn("{}: constraints hold every node, so that no tissue is free; check their surfaces and 'within'",
                  scene.file);
   for (std::size_t c = 0; c < scene.constraints.size(); ++c)
     if (scene.constraints[c].restricts_nodes() &&
         std::none_of(restrictions.begin(), restrictions.end(),
                      [c](const Restriction& of) { return of.constraint == static_cast<std::int32_t>(c); }))
-      monitor.warn("{}: holds no node, because other constraints hold all nodes near its surfaces",
+      monitor.warn("{}: holds no node, because other constraints or loads hold all nodes near its surfaces",
                    place_in_scene(scene, "constraint", scene.constraints[c]));
 }
 
