@@ -100,7 +100,7 @@ std::string check_size(const Scene& scene, const Volumes& volumes, BakeMonitor& 
   const double extent = tissue.sizes().maxCoeff();
   const bool large = extent > largest_tissue;
   const std::string advice = unit_advice(extent, scene.unit);
-  const std::string text =
+  std::string text =
       fmt::format("{}: the tissue spans {}, {} than a {}; check 'unit'{}", scene.file, box_text(tissue, scene.unit),
                   large ? "more" : "less", large ? "head" : "millimetre", advice.empty() ? "" : ": " + advice);
   if (!advice.empty() && (extent < impossible_tissue[0] || extent > impossible_tissue[1]))
