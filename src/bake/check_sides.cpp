@@ -82,6 +82,22 @@ void check_pairs(const Scene& scene, const std::map<std::string, Thing>& things,
         first_across);
 }
 
+/// Warns of surfaces from different files that have the same mesh.
+void find_equal_surfaces(const Scene& scene, const PreparedSurfaces& surfaces, BakeMonitor& monitor)
+{
+  for (auto a = surfaces.begin(); a != surfaces.end(); ++a)
+    for (auto b = std::next(a); b != surfaces.end(); ++b)
+    {
+      const Surface &one = scene.surfaces[index_of(scene.surfaces, (*a)->name(), scene.file, "surface")],
+                    &other = scene.surfaces[index_of(scene.surfaces, (*b)->name(), scene.file, "surface")];
+      if (!one.file.empty() && !other.file.empty() && one.file != other.file &&
+          (*a)->mesh().triangles.size() == (*b)->mesh().triangles.size() && (*a)->box().min() == (*b)->box().min() &&
+          (*a)->box().max() == (*b)->box().max())
+        monitor.warn("{} has the mesh of '{}'; check whether one file was exported or copied under two names",
+                     place_in_scene(scene, "surface", one), other.name);
+    }
+}
+
 }  // namespace
 
 void check_sides(const Scene& scene, const PreparedSurfaces& surfaces, BakeMonitor& monitor)
@@ -97,6 +113,7 @@ void check_sides(const Scene& scene, const PreparedSurfaces& surfaces, BakeMonit
     if (!landmark.head)
       things[landmark.name] = { place_in_scene(scene, "landmark", landmark), Box(to_vector(landmark.position)) };
   check_pairs(scene, things, monitor);
+  find_equal_surfaces(scene, surfaces, monitor);
 }
 
 }  // namespace frontalis

@@ -20,7 +20,7 @@ auto counterpart(const std::map<std::string, Thing>& things, const std::string& 
 
 /// Throws Error if a surface or landmark called NAME_left lies to the right of NAME_right in the face frame. A face
 /// that is mirrored, by its files or by its frame, would otherwise be baked without a word. Warns if left and right do
-/// not lie beside each other in the face frame.
+/// not lie beside each other in the face frame, or on one side of it, and of files with the same mesh.
 void check_sides(const Scene& scene, const PreparedSurfaces& surfaces, BakeMonitor& monitor);
 
 }  // namespace frontalis

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <utility>
 
 namespace frontalis
@@ -77,6 +78,8 @@ Hdf5File Hdf5File::open(const std::string& path)
     throw Error("there is no such file");
   if (std::filesystem::is_directory(path, code))
     throw Error("is a folder; must be a model file");
+  if (!std::ifstream(path))
+    throw Error("cannot be read; check its permissions");
   if (H5Fis_hdf5(path.c_str()) <= 0)
     throw Error("is not an HDF5 file; must be a model written by 'frontalis bake'");
   const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);

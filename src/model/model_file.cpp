@@ -58,8 +58,8 @@ Model read(const std::string& path, const std::string* scene_hash)
     if (version < 0)
       throw Error("is an HDF5 file, but not a model; must be written by 'frontalis bake'");
     if (version != model_file_version)
-      throw Error(fmt::format("has version {}; this program reads version {}: bake the scene again", version,
-                              model_file_version));
+      throw Error(fmt::format("has version {}; this program reads version {}: {}bake the scene again", version,
+                              model_file_version, version > model_file_version ? "update the program, or " : ""));
     Model model;
     ModelReader reader(file, root);
     if (scene_hash != nullptr)

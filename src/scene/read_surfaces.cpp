@@ -79,7 +79,10 @@ public:
                      remedy);
     else
       for (const auto& [file, path] : missing_)
-        file.fault("no file '{}'{}{}", path, alternative(path), remedy);
+        if (std::error_code ignored; std::filesystem::exists(path, ignored))
+          file.fault("'{}' is no file but a folder or device{}", path, remedy);
+        else
+          file.fault("no file '{}'{}{}", path, alternative(path), remedy);
   }
 
 private:

@@ -93,9 +93,10 @@ TEST(Files, that_are_not_the_programs_own_are_not_replaced)
   const std::string notes = folder / "notes.txt", scene = folder / "scene.yaml", model = folder / "m.vtkhdf";
   std::ofstream(notes) << "mine";
   const std::string meshes = std::string(FRONTALIS_SOURCE_DIRECTORY) + "/test/model/bad/";
-  std::filesystem::copy_file(meshes + "box.obj", folder / "body.obj");
+  for (const char* name : { "body.obj", "again.obj" })
+    std::filesystem::copy_file(meshes + "box.obj", folder / name);
   std::ofstream(scene) << R"(unit: mm
-surfaces: {body: {file: body.obj}}
+surfaces: {body: {file: body.obj}, again: {file: again.obj}}
 volumes: {tissue: {inside: body, material: fat, tissue: true}}
 materials: {fat: {young: 3 kPa, poisson: 0.45, density: 1000}}
 constraints: [{name: held, rigid: body, crop: {upper: [null, null, 1]}}]
@@ -120,7 +121,7 @@ accuracy: {draft: {voxel: 2.5}}
     const ProgramResult baked = run_program({ "bake", scene, "-o", model, "--cache", folder / "cache" });
     EXPECT_EQ(baked.code, 0) << baked.errors;
     expect_contains(baked.output, time == 0 ? "kept as" : "taken from");
-    expect_contains(baked.output, "warning  ");
+    expect_contains(baked.output, "surface 'body' has the mesh of 'again'");
   }
 }
 

@@ -93,7 +93,10 @@ ControlNet MuscleSheet::net(const std::function<std::array<Vector3d, 2>(double u
   if (ring_)
     std::swap(reach, width);
   const auto points_over = [](double length, int least)
-  { return std::max(least, static_cast<int>(std::ceil(length / point_distance)) + 1); };
+  {
+    check_edges(point_distance, length);
+    return std::max(least, static_cast<int>(std::ceil(length / point_distance)) + 1);
+  };
   const int n = points_over(reach, least_along), across = points_over(width, least_across);
   ControlNet net;
   net.size = { n, across, 2 };

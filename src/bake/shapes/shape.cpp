@@ -123,10 +123,10 @@ void check_edges(double edge, double length)
 {
   constexpr double most_edges = 1000;
   if (length > most_edges * edge)
-    throw Error(
-        fmt::format("'edge' is {:.3g} mm for a shape {:.3g} mm long or around; at most {} edges are possible: use "
-                    "a longer one, or check the scene's 'unit'",
-                    1e3 * edge, 1e3 * length, most_edges));
+    throw Error(fmt::format(
+        "a shape {:.3g} mm long or around has edges of {:.3g} mm; at most {} edges are possible: use a longer "
+        "'edge', or check the scene's 'unit'",
+        1e3 * length, 1e3 * edge, most_edges));
 }
 
 TriangleMesh make_shape(const Shape& shape)

@@ -52,8 +52,13 @@ People read_people(const std::string& path)
   People people;
   try
   {
-    for (const auto& entry : YAML::LoadFile(path))
+    const YAML::Node root = YAML::LoadFile(path);
+    if (!root.IsMap())
+      throw YAML::Exception(root.Mark(), "must be a mapping from expressions to motions of people");
+    for (const auto& entry : root)
     {
+      if (!entry.second.IsMap())
+        throw YAML::Exception(entry.second.Mark(), "must be a mapping with settles, still and landmarks");
       people.order.push_back(entry.first.as<std::string>());
       PublishedExpression& expression = people.expressions[people.order.back()];
       check_keys(entry.second, { "settles", "still", "landmarks" });
