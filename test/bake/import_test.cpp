@@ -129,6 +129,23 @@ TEST_F(Import, RepeatedCollapsedAndBackToBackTrianglesAreLeftOut)
   EXPECT_NEAR(signed_volume(surface.mesh), 1e-6, 1e-12);
 }
 
+TEST_F(Import, ColoursWeightsCommentsAndCarriageReturnsAreNoFaults)
+{
+  const TriangleMesh mesh = box({ 5, 5, 5 }, { 10, 10, 10 });
+  for (const char* more : { "", " 1", " 0.5 0.25 1", "\r" })
+  {
+    const std::string file = folder_ / "mesh.obj";
+    std::ofstream out(file);
+    out << "# brow, left\nvn 0 0 1\n";
+    for (const Vector3& v : mesh.vertices)
+      out << "v\t" << v[0] << "  " << v[1] << " " << v[2] << more << "\n";
+    for (const Triangle& t : mesh.triangles)
+      out << "f " << t[0] + 1 << " " << t[1] + 1 << " " << t[2] + 1 << "\n";
+    out.close();
+    EXPECT_NEAR(signed_volume(load_surface(file_surface("body", file, 1e-3), 1e-3).mesh), 1e-6, 1e-12) << more;
+  }
+}
+
 TEST_F(Import, AnOpenSurfaceThatIsGivenTwiceKeepsItsBorder)
 {
   TriangleMesh mesh = box({ 5, 5, 5 }, { 10, 10, 10 });

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 namespace frontalis
@@ -105,6 +106,23 @@ TEST(Origin, that_the_scene_gives_is_held_although_the_other_end_is_nearer_to_th
   {
     const auto p = rest_position(model, rigid.node);
     EXPECT_GT(model.to_scene.turned(p)[0] + model.to_scene.translation[0], 0);
+  }
+}
+
+TEST(Origin, that_the_scene_gives_away_from_the_bone_is_told)
+{
+  const std::string hold = "  - {name: hold, rigid: bone, of: strand}\n";
+  for (const bool twice : { false, true })
+  {
+    // Each of two constraints may be meant to hold one end.
+    std::string text = strand("", hold + (twice ? "  - {name: too, rigid: bone, of: strand}\n" : ""), "");
+    const std::string fibre = "fibre: [1, 0, 0]";
+    text.replace(text.find(fibre), fibre.size(), "origin: [20, 1, 3], insertion: [-20, 1, 3]");
+    BakeReport report;
+    baked(text, &report);
+    const auto tells = [](const std::string& warning)
+    { return warning.find("muscle 'strand' is held at its insertion") != std::string::npos; };
+    EXPECT_EQ(std::count_if(report.warnings.begin(), report.warnings.end(), tells), twice ? 0 : 1);
   }
 }
 
