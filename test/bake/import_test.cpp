@@ -146,6 +146,24 @@ TEST_F(Import, ColoursWeightsCommentsAndCarriageReturnsAreNoFaults)
   }
 }
 
+TEST_F(Import, SmallPiecesApartAreTold)
+{
+  const TriangleMesh body = box({ 0, 0, 0 }, { 40, 40, 40 });
+  EXPECT_TRUE(load(together(body, box({ 0, 0, 24 }, { 3, 3, 3 }))).warnings.empty());
+  EXPECT_TRUE(load(together(body, box({ 0, 0, 90 }, { 20, 20, 20 }))).warnings.empty());
+  TriangleMesh many = box({ 0, 0, 0 }, { 1, 1, 1 });
+  for (int i = 1; i < 150; ++i)
+    many = together(many, box({ 3.0 * i, 0, 0 }, { 1, 1, 1 }));
+  EXPECT_TRUE(load(many).warnings.empty());
+  const auto warnings = load(together(body, box({ 0, 0, 90 }, { 3, 3, 3 }))).warnings;
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(
+      warnings[0].find("surface 'body' has 1 piece of less than a hundredth of its area apart from the others, at "
+                       "(0, 0, 90) mm"),
+      0u)
+      << warnings[0];
+}
+
 TEST_F(Import, AnOpenSurfaceThatIsGivenTwiceKeepsItsBorder)
 {
   TriangleMesh mesh = box({ 5, 5, 5 }, { 10, 10, 10 });

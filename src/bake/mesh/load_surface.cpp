@@ -184,6 +184,45 @@ void describe(const MeshFaults& faults, double unit, const Found& found)
   found(text);
 }
 
+/// What to say of small pieces that lie apart from the others, such as those that a segmentation leaves; empty without.
+std::string stray_pieces(const TriangleMesh& mesh, const std::vector<std::int32_t>& piece, double unit)
+{
+  constexpr double small = 0.01;  // share of the area
+  constexpr double apart = 0.1;   // distance from the box around the other pieces, in diagonals of this box
+  struct Piece
+  {
+    double area = 0;
+    Box box;
+  };
+  std::vector<Piece> pieces(1 + *std::max_element(piece.begin(), piece.end()));
+  double whole = 0;
+  for (std::size_t t = 0; t < piece.size(); ++t)
+  {
+    const auto [a, b, c] = corners(mesh, mesh.triangles[t]);
+    Piece& of = pieces[piece[t]];
+    for (const Vector3d& p : { a, b, c })
+      of.box.extend(p);
+    of.area += 0.5 * (b - a).cross(c - a).norm();
+    whole += 0.5 * (b - a).cross(c - a).norm();
+  }
+  Box large;
+  for (const Piece& of : pieces)
+    if (of.area >= small * whole)
+      large.extend(of.box);
+  const auto strays = [&](const Piece& of)
+  { return of.area < small * whole && large.exteriorDistance(of.box.center()) > apart * large.diagonal().norm(); };
+  if (large.isEmpty())
+    return {};
+  const auto count = static_cast<std::size_t>(std::count_if(pieces.begin(), pieces.end(), strays));
+  if (count == 0)
+    return {};
+  const Piece& first = *std::find_if(pieces.begin(), pieces.end(), strays);
+  return fmt::format(
+      "has {} of less than a hundredth of its area apart from the others, {}at {}: remove what does not "
+      "belong to it",
+      count_text(count, "piece", "pieces"), count > 1 ? "one " : "", place_text(first.box.center(), unit));
+}
+
 }  // namespace
 
 LoadedSurface load_surface(const Surface& surface, double unit)
@@ -214,6 +253,8 @@ LoadedSurface load_surface(const Surface& surface, double unit)
                   place_text(first_corner, unit));
   describe(repairs, found);
   const MeshFaults faults = find_mesh_faults(mesh);
+  if (const std::string strays = stray_pieces(mesh, faults.piece, unit); !strays.empty())
+    loaded.warnings.push_back(fmt::format("surface '{}' {}", surface.name, strays));
   const bool closed = unbalanced_edges(mesh).empty();
   if (closed)
   {

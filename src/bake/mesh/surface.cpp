@@ -149,8 +149,12 @@ PreparedSurfaces prepare_surfaces(const Scene& scene, BakeMonitor& monitor)
                  prepared[s] = std::make_unique<PreparedSurface>(surface.name, std::move(loaded[s].mesh));
                });
   for (const LoadedSurface& surface : loaded)
+  {
     for (const std::string& finding : surface.findings)
       monitor.found(finding);
+    for (const std::string& warning : surface.warnings)
+      monitor.warn("{}", warning);
+  }
   return prepared;
 }
 

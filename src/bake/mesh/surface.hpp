@@ -79,6 +79,7 @@ struct LoadedSurface
 {
   TriangleMesh mesh;                  ///< vertices joined, triangles oriented, scene coordinates [m]
   std::vector<std::string> findings;  ///< repairs and harmless faults, one sentence each
+  std::vector<std::string> warnings;  ///< probable mistakes
 };
 
 /// Makes or reads a surface and makes the repairs that do not change its shape. Messages give positions in the length
