@@ -180,9 +180,8 @@ void check_volumes(const Scene& scene, const Volumes& volumes, const Voxels& vox
     // The volume of an open surface is not known.
     if (closed ? differ(here.volume, there.volume, sizes_differ) : differ(here.area, there.area, sizes_differ))
       monitor.warn(
-          "muscle '{}' has {:.3g} {}, '{}' {:.3g} {}: the face will move more on one side; check whether one surface "
-          "is "
-          "incomplete or belongs to both sides",
+          "muscle '{}' has {:.3g} {}, '{}' {:.3g} {}: the face will move more on one side; check whether one "
+          "surface is incomplete or belongs to both sides",
           name, closed ? 1e6 * here.volume : 1e4 * here.area, closed ? "cm3" : "cm2 of surface", other->first,
           closed ? 1e6 * there.volume : 1e4 * there.area, closed ? "cm3" : "cm2");
   }
