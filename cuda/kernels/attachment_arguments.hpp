@@ -7,7 +7,7 @@
 namespace frontalis
 {
 
-/// Bit of AttachedGroup::fixed.
+/// Bit of AttachedGroup::fixed: bones hold a node of the group or move a surface that one slides on.
 constexpr std::uint32_t on_bones = 8;
 
 /// A master and the range of the nodes that follow it.
@@ -17,7 +17,7 @@ struct alignas(16) AttachedGroup
   float mass;                ///< of the master [kg]
   std::uint32_t master;      ///< device node
   std::int32_t first, last;  ///< range of AttachedArguments::ties
-  std::uint32_t fixed;       ///< bit per axis along which the master has a prescribed path; on_bones, if a tie is
+  std::uint32_t fixed;       ///< bit per axis along which the master has a prescribed path, and on_bones
 };
 
 /// A node that follows a master.

@@ -195,7 +195,7 @@ std::string stray_pieces(const TriangleMesh& mesh, const std::vector<std::int32_
     Box box;
   };
   std::vector<Piece> pieces(1 + *std::max_element(piece.begin(), piece.end()));
-  double whole = 0;
+  const double whole = surface_area(mesh);
   for (std::size_t t = 0; t < piece.size(); ++t)
   {
     const auto [a, b, c] = corners(mesh, mesh.triangles[t]);
@@ -203,16 +203,15 @@ std::string stray_pieces(const TriangleMesh& mesh, const std::vector<std::int32_
     for (const Vector3d& p : { a, b, c })
       of.box.extend(p);
     of.area += 0.5 * (b - a).cross(c - a).norm();
-    whole += 0.5 * (b - a).cross(c - a).norm();
   }
   Box large;
   for (const Piece& of : pieces)
     if (of.area >= small * whole)
       large.extend(of.box);
+  if (large.isEmpty())  // no piece is large
+    return {};
   const auto strays = [&](const Piece& of)
   { return of.area < small * whole && large.exteriorDistance(of.box.center()) > apart * large.diagonal().norm(); };
-  if (large.isEmpty())
-    return {};
   const auto count = static_cast<std::size_t>(std::count_if(pieces.begin(), pieces.end(), strays));
   if (count == 0)
     return {};
