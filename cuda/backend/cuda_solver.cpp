@@ -54,9 +54,10 @@ CudaSolver::CudaSolver(const BackendInput& input, const std::string& remark)
     device_.viscosity().keep_account();
   }
   rest();
-  // takes as long as some hundred steps, which should not be the first ones
+  device_.take_masses(u_[0].data(), stream_);
+  // The first search takes as long as some hundred steps, which should not be the first ones.
   if (model_->time_step_estimate == TimeStepEstimate::assembled)
-    prepare_search();
+    highest_frequency_squared();
 }
 
 CudaSolver::~CudaSolver()

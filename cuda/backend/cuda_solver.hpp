@@ -84,7 +84,7 @@ private:
   const float* present_activation();
   void prepare_search();
   void prepare_followers(const std::vector<double>& root);
-  std::vector<ModeShare> shares_in(const std::vector<double>& mode);
+  void list_shares(const std::vector<double>& mode, uint2* list);
 
   const std::string remark_;  // appended to the description
   DeviceModel device_;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <tuple>
-#include <unordered_map>
 
 namespace frontalis
 {
@@ -146,9 +145,7 @@ DeviceAttachment::DeviceAttachment(const Model& model, const std::vector<double>
 }
 
 DeviceAttachment::DeviceAttachment(const AttachedTables& tables)
-    : host_groups_(tables.groups),
-      host_ties_(tables.ties),
-      groups_(tables.groups),
+    : groups_(tables.groups),
       ties_(tables.ties),
       places_(tables.places),
       planes_(tables.places.size()),
@@ -158,27 +155,12 @@ DeviceAttachment::DeviceAttachment(const AttachedTables& tables)
   reset();
 }
 
-void DeviceAttachment::masses_changed(const std::vector<InverseMass>& masses)
+void DeviceAttachment::take_masses(const float4* u, cudaStream_t stream) const
 {
-  if (empty())
-    return;
-  std::unordered_map<std::uint32_t, float> mass_of;
-  for (const InverseMass& mass : masses)
-    mass_of[mass.node] = 1 / mass.own;
-  const auto change = [&](auto& entries, auto& array, auto node_of)
-  {
-    bool changed = false;
-    for (auto& entry : entries)
-      if (const auto found = mass_of.find(node_of(entry)); found != mass_of.end())
-      {
-        entry.mass = found->second;
-        changed = true;
-      }
-    if (changed)
-      array.upload(entries.data(), entries.size());
-  };
-  change(host_groups_, groups_, [](const AttachedGroup& group) { return group.master; });
-  change(host_ties_, ties_, [](const AttachedTie& tie) { return tie.node; });
+  if (!empty())
+    require(launch_take_masses(u, groups_.data(), static_cast<std::uint32_t>(groups_.size()), ties_.data(),
+                               static_cast<std::uint32_t>(ties_.size()), stream),
+            "setting masses of attached nodes");
 }
 
 void DeviceAttachment::describe(StepArguments& g) const

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "cuda/backend/device_memory.hpp"
-#include "cuda/kernels/lanczos_kernels.hpp"
 #include "cuda/kernels/step_kernel.hpp"
 #include "solver/stepping/attached_nodes.hpp"
 
@@ -44,8 +43,8 @@ public:
                    const VoxelPatches* patches);
 
   bool empty() const { return groups_.size() == 0; }
-  /// Gives nodes other masses, where they are masters or attached.
-  void masses_changed(const std::vector<InverseMass>& masses);
+  /// Takes the masses of masters and attached nodes from the inverse masses in `u`.
+  void take_masses(const float4* u, cudaStream_t stream) const;
   /// Sets the members of `g` that describe groups.
   void describe(StepArguments& g) const;
   void list_arrays(ArrayList& list) override;
@@ -55,9 +54,6 @@ public:
 private:
   explicit DeviceAttachment(const AttachedTables& tables);
 
-  // as they are on the device, for changes of masses
-  std::vector<AttachedGroup> host_groups_;
-  std::vector<AttachedTie> host_ties_;
   DeviceArray<AttachedGroup> groups_;
   DeviceArray<AttachedTie> ties_;
   DeviceArray<AttachedPlace> places_;

@@ -88,8 +88,8 @@ public:
   float* inverse_bound_masses() const { return mobility_.data(); }
   /// The same, limited by StepBackend::measure_growth(); null if the model is not assembled.
   float* limited_mobility() const { return limited_mobility_.data(); }
-  /// Changes the masses of attached nodes.
-  void masses_changed(const std::vector<InverseMass>& masses) { attachment_.masses_changed(masses); }
+  /// Takes the masses of attached nodes and their masters from the inverse masses in `u`.
+  void take_masses(const float4* u, cudaStream_t stream) const { attachment_.take_masses(u, stream); }
   DeviceViscosity& viscosity() { return viscosity_; }
   const DeviceViscosity& viscosity() const { return viscosity_; }
 

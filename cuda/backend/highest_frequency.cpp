@@ -13,7 +13,7 @@ namespace
 {
 
 // The host waits for the iterations of a search after series of these lengths. Most searches take 9 to 15 iterations.
-constexpr int first_series = 10, further_series = 4;
+constexpr int first_series = 10, further_series = 2;
 
 }  // namespace
 
@@ -51,8 +51,10 @@ void CudaSolver::prepare_followers(const std::vector<double>& root)
   for (const auto& node : discretisation_.followers)
     followers.push_back(
         { device_.device_node()[node.node], device_.device_node()[node.master], static_cast<float>(node.ratio) });
+  search_->following.resize(root.size());
   for (const auto& node : discretisation_.followers)
-    search_->following[node.master] += node.ratio * node.ratio * discretisation_.node_mass[node.node];
+    search_->following[node.master] +=
+        static_cast<float>(node.ratio * node.ratio * discretisation_.node_mass[node.node]);
   std::stable_sort(followers.begin(), followers.end(),
                    [](const SearchFollower& a, const SearchFollower& b) { return a.master < b.master; });
   std::vector<std::uint32_t> begin;
@@ -135,19 +137,40 @@ std::vector<FoundMode> CudaSolver::modes_above(double frequency_squared)
   FrequencySearch& s = *search_;
   if (s.node_of_device.empty())
   {
-    s.shares = DeviceArray<uint2>(1 + static_cast<std::size_t>(1 / least_mode_share));
     s.node_of_device.resize(device_.nodes());
     for (std::size_t n = 0; n < model_->nodes.size(); ++n)
       s.node_of_device[device_.device_node()[n]] = static_cast<std::int32_t>(n);
   }
+  const std::vector<LanczosMatrix::Eigenpair> pairs = s.matrix.eigenpairs_above(frequency_squared);
+  constexpr auto most_shares = static_cast<std::size_t>(1 / least_mode_share), entries = 1 + most_shares;
+  if (s.shares.size() < pairs.size() * entries)
+    s.shares = DeviceArray<uint2>(pairs.size() * entries);
+  require(cudaMemsetAsync(s.shares.data(), 0, s.shares.bytes(), stream_), "emptying lists");
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    list_shares(pairs[i].vector, s.shares.data() + i * entries);
+  synchronise();
+  std::vector<uint2> lists;
+  s.shares.download(lists);
   std::vector<FoundMode> modes;
-  for (const LanczosMatrix::Eigenpair& pair : s.matrix.eigenpairs_above(frequency_squared))
-    modes.push_back({ pair.value, shares_in(pair.vector) });
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+  {
+    FoundMode mode{ pairs[i].value, {} };
+    const uint2* const list = lists.data() + i * entries;
+    for (std::size_t at = 1; at <= std::min<std::size_t>(list->x, most_shares); ++at)
+    {
+      float share;
+      std::memcpy(&share, &list[at].y, sizeof share);
+      mode.shares.push_back({ s.node_of_device[list[at].x], share });
+    }
+    std::sort(mode.shares.begin(), mode.shares.end(),
+              [](const ModeShare& a, const ModeShare& b) { return a.node < b.node; });
+    modes.push_back(std::move(mode));
+  }
   return modes;
 }
 
-// `mode`: components along the vectors at length 1.
-std::vector<ModeShare> CudaSolver::shares_in(const std::vector<double>& mode)
+// `mode`: components along the vectors at length 1. `list`: zeros; receives the number of shares, and then these.
+void CudaSolver::list_shares(const std::vector<double>& mode, uint2* list)
 {
   static_assert(most_lanczos_iterations <= VectorSum::most_vectors, "a mode may have that many vectors");
   FrequencySearch& s = *search_;
@@ -159,23 +182,9 @@ std::vector<ModeShare> CudaSolver::shares_in(const std::vector<double>& mode)
   }
   g.nodes = static_cast<std::uint32_t>(device_.nodes());
   g.least = least_mode_share;
-  g.list = s.shares.data() + 1;
-  g.listed = &s.shares.data()->x;
-  require(cudaMemsetAsync(g.listed, 0, sizeof *g.listed, stream_), "emptying a list");
+  g.list = list + 1;
+  g.listed = &list->x;
   require(launch_list_shares(g, stream_), "listing a mode");
-  synchronise();
-  std::vector<uint2> list;
-  s.shares.download(list);
-  list.resize(std::min<std::size_t>(list.size(), 1 + list[0].x));
-  std::vector<ModeShare> shares;
-  for (std::size_t i = 1; i < list.size(); ++i)
-  {
-    float share;
-    std::memcpy(&share, &list[i].y, sizeof share);
-    shares.push_back({ s.node_of_device[list[i].x], share });
-  }
-  std::sort(shares.begin(), shares.end(), [](const ModeShare& a, const ModeShare& b) { return a.node < b.node; });
-  return shares;
 }
 
 void CudaSolver::measure_growth(double found)
@@ -193,8 +202,7 @@ void CudaSolver::masses_changed(const std::vector<std::int32_t>& nodes)
   for (const std::int32_t n : nodes)
   {
     const double own = discretisation_.node_mass[n];
-    const auto group = search_->following.find(n);
-    const double following = group == search_->following.end() ? 0 : group->second;
+    const double following = search_->following.empty() ? 0 : double(search_->following[n]);
     masses.push_back(
         { device_.device_node()[n], static_cast<float>(1 / own), static_cast<float>(1 / (own + following)) });
   }
@@ -207,7 +215,7 @@ void CudaSolver::masses_changed(const std::vector<std::int32_t>& nodes)
   require(launch_set_inverse_masses(changes.data(), static_cast<std::uint32_t>(masses.size()), u_[0].data(),
                                     u_[1].data(), for_bound, search_->mobility.data(), stream_),
           "setting masses");
-  device_.masses_changed(masses);
+  device_.take_masses(u_[present_].data(), stream_);
 }
 
 }  // namespace cuda

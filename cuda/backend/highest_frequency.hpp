@@ -4,7 +4,6 @@
 #include "cuda/kernels/lanczos_kernels.hpp"
 #include "solver/stepping/highest_frequency_search.hpp"
 
-#include <unordered_map>
 #include <vector>
 
 namespace frontalis
@@ -24,14 +23,13 @@ struct CudaSolver::FrequencySearch
   DeviceArray<float> mobility;
   DeviceArray<SearchFollower> followers;
   DeviceArray<std::uint32_t> follower_begin;
-
-  std::unordered_map<std::int32_t, double> following;  // mass that follows a node, times squared ratios [kg]
+  std::vector<float> following;  // mass that follows a node, times squared ratios [kg]
 
   // for modes_above()
   bool keeps_vectors;
   std::vector<double> lengths;  // of the vectors
   LanczosMatrix matrix;
-  DeviceArray<uint2> shares;  // the first entry has their number
+  DeviceArray<uint2> shares;  // of each mode; its first entry has their number
   std::vector<std::int32_t> node_of_device;
   DeviceArray<InverseMass> masses;  // that change
 

@@ -6,7 +6,8 @@ namespace frontalis
 namespace cuda
 {
 
-constexpr int block = lanczos_blocks;  // so that each thread reads the sums of one block
+constexpr int block = 512;
+static_assert(block >= lanczos_blocks, "each thread reads the sum of at most one block");
 
 static std::uint32_t blocks_of_masters(const LanczosIteration& g) { return (g.masters + block - 1) / block; }
 
@@ -39,6 +40,13 @@ __device__ Value joined_by_block(Value own)
   return all;
 }
 
+/// The sum of what all blocks have found.
+template <class Value>
+__device__ Value joined_blocks(const Value* of_block)
+{
+  return joined_by_block(threadIdx.x < lanczos_blocks ? of_block[threadIdx.x] : Value{});
+}
+
 __device__ __forceinline__ float root_of(const LanczosIteration& g, std::uint32_t node)
 {
   return sqrtf(g.mobility == nullptr ? g.u[node].w : g.mobility[node]);
@@ -48,7 +56,7 @@ __global__ void __launch_bounds__(block) displace(const __grid_constant__ Lanczo
 {
   let_next_kernel_start();
   wait_for_kernel_before();
-  const float scale = static_cast<float>(g.amplitude / joined_by_block(g.size[threadIdx.x]).y);
+  const float scale = static_cast<float>(g.amplitude / joined_blocks(g.size).y);
   for (std::uint32_t n = blockIdx.x * block + threadIdx.x; n < g.nodes; n += gridDim.x * block)
   {
     const float4 at = g.u[n], along = g.now[n];
@@ -100,11 +108,11 @@ __global__ void __launch_bounds__(block) multiply(const __grid_constant__ Lanczo
 {
   let_next_kernel_start();
   wait_for_kernel_before();
-  const double2 size = joined_by_block(g.size[threadIdx.x]);
+  const double2 size = joined_blocks(g.size);
   const auto image = static_cast<float>(size.y / (g.amplitude * sqrt(size.x)));
   float back = 0;
   if (g.size_before != nullptr)
-    back = static_cast<float>(sqrt(size.x / joined_by_block(g.size_before[threadIdx.x]).x));
+    back = static_cast<float>(sqrt(size.x / joined_blocks(g.size_before).x));
   double along = 0;
   for (std::uint32_t n = blockIdx.x * block + threadIdx.x; n < g.nodes; n += gridDim.x * block)
   {
@@ -125,8 +133,8 @@ __global__ void __launch_bounds__(block) orthogonalise(const __grid_constant__ L
 {
   let_next_kernel_start();
   wait_for_kernel_before();
-  const double squared_length = joined_by_block(g.size[threadIdx.x]).x;
-  const auto part = static_cast<float>(joined_by_block(g.along[threadIdx.x]) / squared_length);
+  const double squared_length = joined_blocks(g.size).x;
+  const auto part = static_cast<float>(joined_blocks(g.along) / squared_length);
   double2 size{ 0, 0 };
   for (std::uint32_t n = blockIdx.x * block + threadIdx.x; n < g.nodes; n += gridDim.x * block)
   {

@@ -5,8 +5,8 @@
 namespace frontalis
 {
 
-/// Number of thread blocks of the kernels that sum over a vector, each of which reports sums over its part. A
-/// block has as many threads. With more, small models take longer to join the sums.
+/// Number of thread blocks of the kernels that sum over a vector, each of which reports sums over its part. With more,
+/// small models take longer to join the sums.
 constexpr int lanczos_blocks = 256;
 
 /// A node whose displacement is `ratio` times that of its master (Discretisation::Follower).

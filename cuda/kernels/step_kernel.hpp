@@ -362,6 +362,10 @@ inline bool finds_bound(const StepArguments& g)
 cudaError_t launch_added_stress(const StepArguments& arguments, cudaStream_t stream);
 /// In strips: applies the constraints of all groups after the tasks of a step. The groups have no nodes in common.
 cudaError_t launch_attached(const StepArguments& arguments, cudaStream_t stream);
+
+/// Takes the masses of groups and ties from the inverse masses in `u`, where these are not 0.
+cudaError_t launch_take_masses(const float4* u, AttachedGroup* groups, std::uint32_t group_count, AttachedTie* ties,
+                               std::uint32_t tie_count, cudaStream_t stream);
 /// In strips: applies the tasks of all nodes after their update. `effects`: those of nodes.
 cudaError_t launch_tasks(const StepArguments& arguments, Effects effects, cudaStream_t stream);
 

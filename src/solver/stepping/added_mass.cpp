@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <numeric>
 #include <utility>
 
@@ -51,15 +50,28 @@ bool MassInMotion::limits(double frequency_squared, const std::vector<AddedMass>
 std::vector<AddedMass> MassInMotion::raise(const std::vector<FoundMode>& modes, std::vector<double>& node_mass,
                                            std::vector<AddedMass>& added) const
 {
-  std::map<std::int32_t, double> growth;
+  struct Growth
+  {
+    std::int32_t node;
+    double by;
+  };
+  std::vector<Growth> growth;
   for (const FoundMode& mode : modes)
   {
     double squares = 0;
     for (const ModeShare& of : mode.shares)
       squares += double(of.share) * double(of.share);
     for (const ModeShare& of : mode.shares)
-      growth[of.node] += (margin * mode.frequency_squared / allowed_ - 1) * double(of.share) / squares;
+      growth.push_back({ of.node, (margin * mode.frequency_squared / allowed_ - 1) * double(of.share) / squares });
   }
+  std::stable_sort(growth.begin(), growth.end(), [](const Growth& a, const Growth& b) { return a.node < b.node; });
+  std::size_t last = 0;
+  for (std::size_t i = 1; i < growth.size(); ++i)
+    if (growth[i].node == growth[last].node)
+      growth[last].by += growth[i].by;
+    else
+      growth[++last] = growth[i];
+  growth.resize(std::min(growth.size(), last + 1));
   double wanted = 0;
   for (const auto& [node, by] : growth)
     wanted += by * node_mass[node] / total_mass_;
