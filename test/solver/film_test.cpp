@@ -123,6 +123,25 @@ TEST(Film, FoldsAtTheWavelengthAndTheAmplitudeOfTheory)
     }
 }
 
+// In a grid of squares whose diagonals alternate, every other vertex is a corner of eight triangles, and the others of
+// four.
+TEST(Film, HeightsDoNotFollowTheDiagonals)
+{
+  Model model = film_model(100);
+  constexpr std::size_t n = 61;
+  const double edge = width(model) / (n - 1);
+  for (std::size_t v = 0; v < n * n; ++v)
+    model.skin.vertices[v] = { { edge * static_cast<double>(v % n), edge * static_cast<double>(v / n), 0 } };
+  FilmEquilibrium film(model, 0);
+  const auto height = heights(film, compressed(model, 2 * film_critical_strain(model.film.laws[0])));
+  double squares[2] = { 0, 0 };
+  for (std::size_t v = 0; v < n * n; ++v)
+    if (in_the_middle(model, v))
+      squares[(v % n + v / n) % 2] += static_cast<double>(height[v]) * height[v];
+  EXPECT_GT(squares[0], 0);
+  EXPECT_NEAR(std::sqrt(squares[1] / squares[0]), 1, 0.02);
+}
+
 TEST(Film, FoldsFromTheCriticalStrainOfTheoryOnAndIsFlatBelowIt)
 {
   const Model model = film_model(100);

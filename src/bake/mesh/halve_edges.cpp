@@ -2,8 +2,10 @@
 
 #include "frontalis/model/skin_film.hpp"
 
-#include <queue>
+#include <algorithm>
+#include <cmath>
 #include <unordered_map>
+#include <unordered_set>
 
 namespace frontalis
 {
@@ -20,6 +22,8 @@ std::uint64_t key_of(std::int32_t a, std::int32_t b)
 // A mesh whose edges are halved one after the other.
 class Halving
 {
+  using Edge = std::pair<double, std::uint64_t>;  // squared length and key
+
 public:
   Halving(TriangleMesh& mesh, const std::function<double(const Vector3d&)>& longest) : mesh_(mesh), longest_(longest)
   {
@@ -36,22 +40,23 @@ public:
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
       for (std::size_t c = 0; c < 3; ++c)
         triangles_of_[key_of(mesh.triangles[t][c], mesh.triangles[t][(c + 1) % 3])].push_back(t);
-    for (const auto& [key, triangles] : triangles_of_)
-      add_if_long(key);
   }
 
   std::vector<std::array<std::int32_t, 2>> run()
   {
     std::vector<std::array<std::int32_t, 2>> parents;
-    while (!queue_.empty())
+    for (;;)
     {
-      const std::uint64_t key = queue_.top().second;
-      queue_.pop();
-      const auto [a, b] = ends_of(key);
-      halve(key, a, b);
-      parents.push_back({ a, b });
+      const std::vector<Edge> edges = edges_to_halve();
+      if (edges.empty())
+        return parents;
+      for (const Edge& edge : edges)
+      {
+        const auto [a, b] = ends_of(edge.second);
+        halve(edge.second, a, b);
+        parents.push_back({ a, b });
+      }
     }
-    return parents;
   }
 
 private:
@@ -60,12 +65,47 @@ private:
     return { static_cast<std::int32_t>(key >> 32U), static_cast<std::int32_t>(key & 0xffffffffU) };
   }
 
-  void add_if_long(std::uint64_t key)
+  Edge edge_of(std::uint64_t key) const
   {
     const auto [a, b] = ends_of(key);
-    const Vector3d p = vertex(mesh_, a), q = vertex(mesh_, b);
-    if ((q - p).norm() > longest_(0.5 * (p + q)))
-      queue_.emplace((q - p).squaredNorm(), key);
+    return { (vertex(mesh_, b) - vertex(mesh_, a)).squaredNorm(), key };
+  }
+  std::array<Edge, 3> edges_of(std::size_t triangle) const
+  {
+    const Triangle& t = mesh_.triangles[triangle];
+    return { edge_of(key_of(t[0], t[1])), edge_of(key_of(t[1], t[2])), edge_of(key_of(t[2], t[0])) };
+  }
+  bool is_long(const Edge& edge) const
+  {
+    const auto [a, b] = ends_of(edge.second);
+    return std::sqrt(edge.first) > longest_(0.5 * (vertex(mesh_, a) + vertex(mesh_, b)));
+  }
+
+  // All edges of triangles with one that is too long, and the longest edges of triangles with one of them; longest
+  // first.
+  std::vector<Edge> edges_to_halve() const
+  {
+    std::vector<Edge> found;
+    std::unordered_set<std::uint64_t> known;
+    const auto add = [&](const Edge& edge)
+    {
+      if (known.insert(edge.second).second)
+        found.push_back(edge);
+    };
+    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t)
+    {
+      const std::array<Edge, 3> edges = edges_of(t);
+      if (std::any_of(edges.begin(), edges.end(), [&](const Edge& edge) { return is_long(edge); }))
+        std::for_each(edges.begin(), edges.end(), add);
+    }
+    for (std::size_t i = 0; i < found.size(); ++i)
+      for (const std::size_t t : triangles_of_.at(found[i].second))
+      {
+        const std::array<Edge, 3> edges = edges_of(t);
+        add(*std::max_element(edges.begin(), edges.end()));
+      }
+    std::sort(found.rbegin(), found.rend());
+    return found;
   }
 
   void halve(std::uint64_t key, std::int32_t a, std::int32_t b)
@@ -102,17 +142,13 @@ private:
       triangles_of_[key_of(a, middle)].push_back(t);
       triangles_of_[key_of(b, middle)].push_back(added);
       triangles_of_[key_of(opposite, middle)] = { t, added };
-      add_if_long(key_of(opposite, middle));
     }
-    add_if_long(key_of(a, middle));
-    add_if_long(key_of(b, middle));
   }
 
   TriangleMesh& mesh_;
   const std::function<double(const Vector3d&)>& longest_;
   std::vector<Vector3d> normals_;
   std::unordered_map<std::uint64_t, std::vector<std::size_t>> triangles_of_;
-  std::priority_queue<std::pair<double, std::uint64_t>> queue_;  // squared length and key of edges that are too long
 };
 
 }  // namespace

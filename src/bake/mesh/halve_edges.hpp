@@ -5,9 +5,10 @@
 namespace frontalis
 {
 
-/// Halves edges that are longer than longest(middle) [m], the longest ones first, so that angles stay bounded (Rivara
-/// 1984). New vertices follow the old ones and lie on a smooth surface (curved_middle()). Returns, for each new vertex,
-/// the ends of the edge that it halves.
+/// Divides triangles with an edge longer than longest(middle) [m] into four by halving their edges, the longest ones
+/// first, and their neighbours as needed (four-triangle longest-edge partition, Rivara 1984): angles stay bounded, and
+/// regular meshes stay regular. New vertices follow the old ones and lie on a smooth surface (curved_middle()).
+/// Returns, for each new vertex, the ends of the edge that it halves.
 std::vector<std::array<std::int32_t, 2>> halve_edges(TriangleMesh& mesh,
                                                      const std::function<double(const Vector3d&)>& longest);
 

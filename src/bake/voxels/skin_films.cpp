@@ -8,8 +8,8 @@ namespace frontalis
 namespace
 {
 
-// Wavelength of fine lines divided by the longest edge allowed. Halving leaves edges whose mean length is three
-// quarters of the longest, so that a wavelength has six edges.
+// Wavelength of fine lines divided by the longest edge allowed. The mean edge is about half as long, so that a
+// wavelength has eight edges or more.
 constexpr double edges_per_line = 4.5;
 constexpr double vertices_per_edge_area = 3.2;  // measured number of vertices per square of the longest edge
 constexpr double most_vertices = 2e6;

@@ -72,8 +72,10 @@ FilmEquilibrium::FilmEquilibrium(const Model& model, std::size_t law, std::vecto
 }
 
 // Sets the weights of linear finite elements for the operator div N grad with a tensor N: a triangle of area A
-// contributes -A grad_a . N . grad_b to the edge between its corners a and b. The area of a vertex is a third of the
-// area of its triangles.
+// contributes -A grad_a . N . grad_b to the edge between its corners a and b. The area of a vertex is that of its
+// Voronoi region; of an obtuse triangle half is given to the obtuse corner and a quarter to each of the others (Meyer,
+// Desbrun, Schroeder & Barr 2003, Discrete differential-geometry operators for triangulated 2-manifolds). With a third
+// for each corner, heights would alternate on meshes whose diagonals do.
 void FilmEquilibrium::make_operators()
 {
   const std::size_t count = order_.size();
@@ -103,6 +105,10 @@ void FilmEquilibrium::make_operators()
     const double twice = std::sqrt(dot(normal, normal));
     if (!(twice > 0))
       continue;
+    double cotangent[3];
+    for (int c = 0; c < 3; ++c)
+      cotangent[c] = dot(at[(c + 1) % 3] - at[c], at[(c + 2) % 3] - at[c]) / twice;
+    const bool obtuse = *std::min_element(cotangent, cotangent + 3) < 0;
     for (int c = 0; c < 3; ++c)
     {
       const int a = (c + 1) % 3, b = (c + 2) % 3;
@@ -118,8 +124,10 @@ void FilmEquilibrium::make_operators()
         shared.squared = static_cast<float>(k_ * k_ * size * size);
         ++shared.triangles;
         length[from] = std::max(length[from], size);
+        area[from] += obtuse ? 0 : cotangent[c] * size * size / 8;
       }
-      area[t[c]] += twice / 6;
+      if (obtuse)
+        area[t[c]] += (cotangent[c] < 0 ? 0.25 : 0.125) * twice;
     }
   }
   begin_.assign(1, 0);
