@@ -57,6 +57,8 @@ void measure_faces(FacesOptions& options)
 {
   if (options.people.empty())
     options.people = FRONTALIS_SOURCE_DIRECTORY "/config/people.yaml";
+  check_output(options.json);
+  check_output(options.table);
   const People people = read_people(options.people);
   const auto model = std::make_shared<const Model>(obtain_model(options.source));
   const std::vector<std::string> names = chosen_expressions(options, *model, people.order);

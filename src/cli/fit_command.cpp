@@ -49,6 +49,8 @@ void fit_landmarks(FitOptions& options)
   const FitRequest request = read_fit_request(options.request);
   if (request.targets.empty())
     throw Error(options.request + ": has no targets; must have landmarks below 'moved' or 'at'");
+  check_output(options.json);
+  check_output(options.activations);
   const auto model = std::make_shared<const Model>(obtain_model(options.source));
   options.settings.cache = options.source.cache;
   Progress progress;
@@ -72,6 +74,7 @@ void retarget_track(FitOptions& options)
 {
   // The options are checked before the simulations, which take minutes.
   const std::string plot = plot_path(options.plot);
+  check_output(options.activations);
   const FitRequest request = options.request.empty() ? FitRequest() : read_fit_request(options.request);
   if (!request.targets.empty())
     throw Error(options.request + ": has targets; the track has them here, so only unknowns and deviation are allowed");
@@ -98,6 +101,7 @@ struct CalibrationOptions : FitOptions
 
 void calibrate_robot(CalibrationOptions& options)
 {
+  check_output(options.output);
   const auto actuators = read_actuators(options.actuators);
   const ActuatorTrack joints = read_actuator_track(options.joints, actuators);
   const LandmarkTrack landmarks = read_landmark_track(options.track);

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 namespace frontalis
 {
@@ -200,6 +201,10 @@ std::vector<std::string> chosen(const GltfOptions& options, const Model& model)
 
 void write_gltf(const GltfOptions& options)
 {
+  const std::string what = "the path of a file .glb";
+  if (std::filesystem::path(options.file).extension() != ".glb")
+    throw WrongUsage("--output: found '" + options.file + "'; must be " + what);
+  check_output(options.file, what);
   const auto model = std::make_shared<const Model>(obtain_model(options.source));
   const std::vector<std::string> names = chosen(options, *model);
   std::vector<Controls> poses;

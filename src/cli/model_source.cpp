@@ -42,20 +42,29 @@ bool is_model_file(const std::string& path)
   return file.read(begin.data(), static_cast<std::streamsize>(begin.size())) && begin == signature;
 }
 
-void check_model_output(const std::string& path)
+void check_output(const std::string& path, const std::string& what)
 {
   if (path.empty())
-    throw WrongUsage("--output: must be the path of a model file (.vtkhdf)");
+    return;
   const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
   std::error_code ignored;
   if (!std::filesystem::is_directory(folder, ignored))
     throw Error(path + ": no folder '" + folder.string() + "' to write it in; must exist");
+  if (std::filesystem::is_directory(path, ignored))
+    throw Error(path + ": is a folder; must be " + what);
+}
+
+void check_model_output(const std::string& path)
+{
+  const std::string what = "the path of a model file (.vtkhdf)";
+  if (path.empty())
+    throw WrongUsage("--output: must be " + what);
+  check_output(path, what);
+  std::error_code ignored;
   if (!std::filesystem::exists(path, ignored))
     return;
-  if (std::filesystem::is_directory(path, ignored))
-    throw Error(path + ": is a folder; must be the path of a model file (.vtkhdf)");
   if (!std::filesystem::is_regular_file(path, ignored))
-    throw Error(path + ": is no regular file; must be the path of a model file (.vtkhdf)");
+    throw Error(path + ": is no regular file; must be " + what);
   if (std::filesystem::file_size(path, ignored) > 0 && !has_model(path))
     throw Error(path + ": exists and is no model; must be a new file or a model to replace");
 }

@@ -43,8 +43,10 @@ void add_scene_options(CLI::App& command, ModelSource& source);
 
 /// Whether a file is a baked model: by its extension (.vtkhdf, .h5, .hdf5) or the signature of HDF5 at its beginning.
 bool is_model_file(const std::string& path);
-/// Throws Error, before long work, if a model could not be written to this path or would replace something else than a
-/// model or an empty file.
+/// Throws Error, before long work, if a file could not be written to this path; an empty path stands for none. `what`:
+/// what the path must be.
+void check_output(const std::string& path, const std::string& what = "the path of a file");
+/// The same for a model, which must not replace something else than a model or an empty file.
 void check_model_output(const std::string& path);
 
 /// Reads a scene and bakes it, and shows the progress. Throws Error, Interrupted.

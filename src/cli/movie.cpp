@@ -16,6 +16,8 @@ namespace frontalis
 namespace
 {
 
+constexpr const char* frame_names = R"(frame_[0-9]{4,}\.png)";
+
 // Quotes a text as one word of a shell command.
 std::string shell_word(const std::string& text)
 {
@@ -65,10 +67,9 @@ Movie::Movie(const MovieOptions& options, double frame_rate, const Model& model)
           "--movie " + path_ +
           ": ImageMagick's program convert is missing (Debian's package imagemagick); a folder takes the frames");
     folder_ += ".frames";
-    std::filesystem::remove_all(folder_);
   }
   make_folder(folder_);
-  remove_files(folder_, R"(frame_[0-9]{4,}\.png)");
+  remove_files(folder_, frame_names);
 }
 
 void Movie::add(const SkinState& skin, const Controls& controls)
@@ -90,7 +91,9 @@ void Movie::finish()
                   frame_rate_, shell_word(folder_), shell_word(path_));
   if (std::system(command.c_str()) != 0)
     throw Error(path_ + ": cannot be written by: " + command + "; its frames are in " + folder_);
-  std::filesystem::remove_all(folder_);
+  remove_files(folder_, frame_names);
+  std::error_code not_empty;
+  std::filesystem::remove(folder_, not_empty);
 }
 
 }  // namespace frontalis

@@ -271,15 +271,14 @@ void simulate(RunOptions& options)
   if (options.frame_rate <= 0)
     options.frame_rate = model->frame_rate;
   ControlCurve curve = options.demo ? demo_of(options, *model) : curve_of(options, *model);
-  std::optional<FrameFolder> folder;
-  if (!options.frames.empty())
-    folder.emplace(options.frames, *model, options.vtp);
-
   const std::unique_ptr<Solver> solver = make_solver(model, options.solver);
   switch_off(*solver, off);
-  Run run{ options, *model, std::move(curve), *solver, std::move(folder) };
+  Run run{ options, *model, std::move(curve), *solver, std::nullopt };
   if (!options.movie.path.empty())
     run.movie.emplace(options.movie, options.frame_rate, *model);
+  // It removes frames of earlier runs, which must stay if an option is refused.
+  if (!options.frames.empty())
+    run.folder.emplace(options.frames, *model, options.vtp);
   run.fine_lines = FineLines::make(model, false);
   RunSummary& summary = run.summary;
   if (!options.plot.empty())

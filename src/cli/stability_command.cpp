@@ -88,6 +88,8 @@ std::shared_ptr<const Model> stability_scene(const StabilityOptions& options, co
 
 void run_stability(const StabilityOptions& options)
 {
+  check_output(options.json);
+  check_output(options.table);
   const auto cases =
       chosen_cases(stability_cases(stability_folder(options.cases)), options.only, options.settings.long_runs);
   Progress progress(nullptr);

@@ -1,4 +1,5 @@
 #include "cli/command_options.hpp"
+#include "cli/model_source.hpp"
 
 #include "frontalis/bake/bake.hpp"
 #include "frontalis/error.hpp"
@@ -26,6 +27,8 @@ struct VerifyOptions
 
 void verify(const VerifyOptions& options)
 {
+  check_output(options.json);
+  check_output(options.markdown);
   BakeScene make_model;
 #ifdef FRONTALIS_WITH_BAKE
   make_model = [](const Scene& scene) { return bake(scene); };

@@ -12,8 +12,8 @@
 namespace frontalis
 {
 
-BoneFollower::BoneFollower(std::vector<BoneFrame> frames, std::string face_frame, double speed, double patience)
-    : frames_(std::move(frames)), face_frame_(std::move(face_frame)), speed_(speed), patience_(patience)
+BoneFollower::BoneFollower(std::vector<BoneFrame> frames, std::string face_frame, double speed)
+    : frames_(std::move(frames)), face_frame_(std::move(face_frame)), speed_(speed)
 {
   if (frames_.empty())
     return;
@@ -27,7 +27,7 @@ void BoneFollower::clear()
   status_.clear();
 }
 
-RigidTransform BoneFollower::wanted(const BoneFrame& bone) const
+RigidTransform BoneFollower::wanted(const BoneFrame& bone, double patience) const
 {
   // time 0 means the latest time that all links have in common, so that nothing is extrapolated
   const auto place = [&](const std::string& frame)
@@ -35,21 +35,21 @@ RigidTransform BoneFollower::wanted(const BoneFrame& bone) const
   const auto now = place(bone.frame);
   // A static transform has the stamp 0 and is never too old.
   const double age = now.header.stamp.isZero() ? 0.0 : (ros::Time::now() - now.header.stamp).toSec();
-  if (std::abs(age) > patience_)
+  if (std::abs(age) > patience)
     throw Error(fmt::format("the latest transform of '{}' is {:.3g} s {}; allowed are {:.3g} s", bone.frame,
-                            std::abs(age), age > 0 ? "old" : "in the future", patience_));
+                            std::abs(age), age > 0 ? "old" : "in the future", patience));
   const RigidTransform motion = to_motion(now.transform);
   return bone.rest.empty() ? motion : composed(motion, inverse(to_motion(place(bone.rest).transform)));
 }
 
-std::map<std::string, RigidTransform> BoneFollower::follow(double seconds)
+std::map<std::string, RigidTransform> BoneFollower::follow(double seconds, double patience)
 {
   for (const BoneFrame& bone : frames_)
   {
     Status& status = status_[bone.bone];
     try
     {
-      const RigidTransform target = wanted(bone);
+      const RigidTransform target = wanted(bone, patience);
       if (!is_rigid_motion(target))
         throw Error("the transform of '" + bone.frame + "' is not finite");
       RigidTransform& at = motion_[bone.bone];

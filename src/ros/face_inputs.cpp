@@ -40,8 +40,7 @@ void FaceInputs::start(const std::shared_ptr<const Model>& model, const InputPar
     if (std::find(model->bones.begin(), model->bones.end(), followed.bone) == model->bones.end())
       throw Error(fmt::format("~bone_frames: no bone is called '{}'; the bones are {}", followed.bone,
                               list_with_suggestion(followed.bone, model->bones)));
-  auto follower = std::make_unique<BoneFollower>(parameters.bone_frames, face_frame, parameters.bone_speed,
-                                                 parameters.stamp_tolerance);
+  auto follower = std::make_unique<BoneFollower>(parameters.bone_frames, face_frame, parameters.bone_speed);
   auto demo = std::make_unique<DemoPlayer>(model);
   const std::lock_guard<std::mutex> lock(mutex_);
   model_ = model;
@@ -99,7 +98,7 @@ void FaceInputs::play(Runner& running, double time)
       commands_->relax(time - late, parameters_.relax_time);
       if (!posed_.empty())
         bones_ = { { time - late, time - late + parameters_.relax_time },
-                   { present_bones(time - late), rest_controls(*model_) } };
+                   { present_bones(running, time - late), rest_controls(*model_) } };
       ROS_WARN_STREAM(name_ << ": no command for " << parameters_.command_timeout << " s: the face relaxes over "
                             << parameters_.relax_time << " s");
     }
@@ -108,7 +107,7 @@ void FaceInputs::play(Runner& running, double time)
   }
   if (time > followed_)
   {
-    for (const auto& [bone, motion] : follower_->follow(time - followed_))
+    for (const auto& [bone, motion] : follower_->follow(time - followed_, parameters_.stamp_tolerance))
       running.set_bone(bone, motion);
     followed_ = time;
   }
@@ -137,9 +136,13 @@ std::map<std::string, double> FaceInputs::present(double time) const
   return demo_playing_ ? demo_->activation(time) : commands_->at(time);
 }
 
-Controls FaceInputs::present_bones(double time) const
+Controls FaceInputs::present_bones(const Runner& running, double time) const
 {
-  Controls now = bones_.time.empty() ? rest_controls(*model_) : bones_.at(time);
+  Controls now = rest_controls(*model_);
+  now.bone = running.bones();
+  for (std::size_t bone = 0; bone < now.bone.size(); ++bone)
+    if (posed_.count(model_->bones[bone]) > 0)
+      now.bone[bone] = bones_.at(time).bone[bone];
   if (demo_playing_)
     for (const auto& [bone, motion] : demo_->bones(time))
       set_bone_motion(*model_, bone, motion, now.bone);

@@ -174,7 +174,7 @@ void FaceNode::replace_face(const FaceParameters& parameters)
     has_frame_ = false;
     frame_finite_ = true;
     speed_report_.clear();
-    caption_.clear();
+    caption_.reset();
     last_frame_ = last_published_ = ros::WallTime::now();
     time_ = 0;
     parameters_ = parameters;
@@ -191,8 +191,8 @@ void FaceNode::replace_face(const FaceParameters& parameters)
     // the new runner has all effects switched on
     const boost::recursive_mutex::scoped_lock lock(server_mutex_);
     switched_off_.clear();
-    if (server_)
-      on_config(config_, 0);
+    if (server_ && config_)
+      on_config(*config_, 0);
     else
     {
       server_ = std::make_unique<dynamic_reconfigure::Server<FaceConfig>>(server_mutex_, private_handle_);

@@ -43,6 +43,7 @@ bool FaceNode::on_reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response
   return answer(response,
                 [&](Runner& running)
                 {
+                  ++resets_;
                   inputs_.reset(running);
                   paused_ = running.paused();
                 });
@@ -72,9 +73,13 @@ bool FaceNode::on_step(Step::Request& request, Step::Response& response)
         Frame frame;
         frame.time = time_;
         double left = request.seconds;
+        const std::uint64_t resets = resets_;
         paused_ = true;  // set before the step, because its frames report it
         do
         {
+          // Between two pieces no runner is there that could end the step.
+          if (resets_ != resets || runner().get() != &running)
+            throw Error("the step was ended early");
           const double seconds = inputs_.timed(frame.time) && left > piece ? piece : left;
           inputs_.play(running, frame.time + seconds);
           left -= seconds;
@@ -199,11 +204,16 @@ void FaceNode::on_config(FaceConfig& config, std::uint32_t)
   catch (const Error& error)
   {
     ROS_WARN_STREAM(name_ << ": configuration refused: " << error.what());
-    // Applying the old configuration undoes the changes made before the fault was found.
-    config = config_;
+    // Applying the old configuration undoes the changes made before the fault was found. Of the first configuration,
+    // only effects that the face cannot be without are left to be refused (read_parameters).
+    if (config_)
+      config = *config_;
+    else
+      config.effects_off.clear();
     try
     {
-      apply_config(*running, config_);
+      apply_config(*running, config);
+      config_ = config;
     }
     catch (const Error& again)
     {
@@ -232,18 +242,24 @@ void FaceNode::apply_config(Runner& running, const FaceConfig& config)
   running.set_frame_rate(config.frame_rate);
   running.set_damping(config.damping);
   // Effects that this configuration does not change are left alone: ~switch_effect may have switched them.
-  for (const Effect effect : every_effect())
-    if (!effects_of(running.model()).has(effect))
-      continue;
-    else if (const bool wanted_off = off.count(name_of(effect)) > 0;
-             wanted_off != (switched_off_.count(name_of(effect)) > 0))
-    {
-      running.switch_effect(effect, !wanted_off);
-      if (wanted_off)
-        switched_off_.insert(name_of(effect));
-      else
-        switched_off_.erase(name_of(effect));
-    }
+  const EffectSet present = effects_of(running.model());
+  const auto switch_to = [&](Effect effect, bool on)
+  {
+    const bool is_on = switched_off_.count(name_of(effect)) == 0, wanted = off.count(name_of(effect)) == 0;
+    if (!present.has(effect) || wanted != on || is_on == on)
+      return;
+    running.switch_effect(effect, on);
+    if (on)
+      switched_off_.erase(name_of(effect));
+    else
+      switched_off_.insert(name_of(effect));
+  };
+  // An effect may need an earlier one.
+  const auto effects = every_effect();
+  for (auto effect = std::rbegin(effects); effect != std::rend(effects); ++effect)
+    switch_to(*effect, false);
+  for (const Effect effect : effects)
+    switch_to(effect, true);
   InputParameters inputs;
   {
     const std::scoped_lock lock(runner_mutex_, frame_mutex_);

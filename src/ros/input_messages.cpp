@@ -190,7 +190,7 @@ void FaceInputs::take_pose(const char* topic, Runner& running, double now, const
     if (timing.hold > 0)
       course.insert(course.end(), { { left, pose.activation[muscle] }, { over, rest.activation[muscle] } });
   }
-  ControlCurve bones{ { now, reached }, { present_bones(now), pose } };
+  ControlCurve bones{ { now, reached }, { present_bones(running, now), pose } };
   if (timing.hold > 0)
   {
     bones.time.insert(bones.time.end(), { left, over });

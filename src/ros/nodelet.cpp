@@ -9,10 +9,29 @@
 namespace frontalis
 {
 
+/// Calls start(). The loader of nodelets would hide why it failed.
+template <class Start>
+void told(const std::string& name, const Start& start)
+{
+  try
+  {
+    start();
+  }
+  catch (const std::exception& error)
+  {
+    ROS_FATAL_STREAM(name << ": " << error.what());
+    throw;
+  }
+}
+
 /// The nodelet frontalis/face.
 class FaceNodelet : public nodelet::Nodelet
 {
-  void onInit() override { face_ = std::make_unique<FaceNode>(getMTNodeHandle(), getMTPrivateNodeHandle(), getName()); }
+  void onInit() override
+  {
+    told(getName(),
+         [this] { face_ = std::make_unique<FaceNode>(getMTNodeHandle(), getMTPrivateNodeHandle(), getName()); });
+  }
 
   std::unique_ptr<FaceNode> face_;
 };
@@ -20,7 +39,10 @@ class FaceNodelet : public nodelet::Nodelet
 /// The nodelet frontalis/camera.
 class CameraNodelet : public nodelet::Nodelet
 {
-  void onInit() override { camera_ = std::make_unique<VirtualCamera>(getNodeHandle(), getPrivateNodeHandle()); }
+  void onInit() override
+  {
+    told(getName(), [this] { camera_ = std::make_unique<VirtualCamera>(getNodeHandle(), getPrivateNodeHandle()); });
+  }
 
   std::unique_ptr<VirtualCamera> camera_;
 };

@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <limits>
+#include <sstream>
 
 namespace frontalis
 {
@@ -28,9 +30,16 @@ Pace pace_from_name(const std::string& name)
 std::vector<BoneFrame> read_bone_frames(ParameterReader& reader)
 {
   std::vector<BoneFrame> out;
-  XmlRpc::XmlRpcValue all;
-  all.begin();  // makes the value a struct
-  for (auto& [bone, value] : reader.value("bone_frames", all, "a mapping of bones to frames"))
+  constexpr const char* allowed = "a mapping of bones to frames";
+  auto all = reader.value("bone_frames", XmlRpc::XmlRpcValue(), allowed);
+  if (!all.valid())
+    return out;
+  if (all.getType() != XmlRpc::XmlRpcValue::TypeStruct)
+  {
+    reader.add_fault("bone_frames", std::string("has the wrong type; allowed is ") + allowed);
+    return out;
+  }
+  for (auto& [bone, value] : all)
   {
     const auto text = [&entry = value](const char* key) -> std::string
     { return entry.hasMember(key) && entry[key].getType() == XmlRpc::XmlRpcValue::TypeString ? entry[key] : ""; };
@@ -39,11 +48,28 @@ std::vector<BoneFrame> read_bone_frames(ParameterReader& reader)
       followed.frame = static_cast<std::string>(value);
     else if (value.getType() == XmlRpc::XmlRpcValue::TypeStruct)
       followed = { bone, text("frame"), text("rest") };
-    if (followed.frame.empty())
+    const int known = (followed.frame.empty() ? 0 : 1) + (followed.rest.empty() ? 0 : 1);
+    const bool unknown = value.getType() == XmlRpc::XmlRpcValue::TypeStruct && value.size() > known;
+    if (followed.frame.empty() || unknown)
       reader.add_fault("bone_frames/" + bone, "allowed is the name of a frame, or a mapping with frame and rest");
     out.push_back(followed);
   }
   return out;
+}
+
+/// Reads the parameter ~effects_off, which FaceNode::apply_config() applies.
+void check_effects_off(ParameterReader& reader)
+{
+  std::istringstream words(reader.text("effects_off", ""));
+  try
+  {
+    for (std::string word; words >> word;)
+      effect_from_name(word);
+  }
+  catch (const Error& error)
+  {
+    reader.add_fault("effects_off", error.what());
+  }
 }
 
 }  // namespace
@@ -108,6 +134,9 @@ FaceParameters read_parameters(const ros::NodeHandle& private_handle)
       reader.text("blendshapes_table", ros::package::getPath("frontalis") + "/config/blendshapes.yaml");
   out.inputs.bone_frames = read_bone_frames(reader);
   out.inputs.bone_speed = reader.number("bone_speed", out.inputs.bone_speed, "a number [m/s]", 0.0, "0 or more [m/s]");
+  reader.number("damping", -1.0, "a number [1/s]; below 0: the model's", std::numeric_limits<double>::lowest(),
+                "a finite number [1/s]; below 0: the model's");
+  check_effects_off(reader);
   out.real_time_factor_warning = reader.number("real_time_factor_warning", 0.5, "a number", 0.0, "0 or more");
   reader.finish();
   return out;

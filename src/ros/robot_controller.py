@@ -38,12 +38,16 @@ def turned(q, v):
 
 class Joint:
     def __init__(self, element):
-        limit = element.find("limit")
+        limit, axis = element.find("limit"), element.find("axis")
         self.name = element.get("name")
         self.child = element.find("child").get("link")
-        self.axis = [float(x) for x in element.find("axis").get("xyz").split()]
+        # what is not given has URDF's default; a continuous joint has no bounds
+        self.axis = [float(x) for x in (axis.get("xyz", "1 0 0") if axis is not None else "1 0 0").split()]
         self.turns = element.get("type") != "prismatic"
-        self.lower, self.upper, self.velocity = (float(limit.get(key)) for key in ("lower", "upper", "velocity"))
+        given = {} if limit is None else limit.attrib
+        bound = float("inf") if element.get("type") == "continuous" else 0.0
+        self.lower, self.upper = float(given.get("lower", -bound)), float(given.get("upper", bound))
+        self.velocity = float(given.get("velocity", "inf"))
         self.position = self.speed = 0.0
         self.efforts = {}  # by link behind the joint: what holds the link against the skin
         self.times, self.goals = [], []  # knots of the joint's trajectory; none: it stays
@@ -51,8 +55,10 @@ class Joint:
     def wanted(self, now):
         """The position of the trajectory at a time [s]."""
         for (t0, p0), (t1, p1) in zip(zip(self.times, self.goals), zip(self.times[1:], self.goals[1:])):
+            if now <= t0:
+                return p0
             if now < t1:
-                return p0 + (p1 - p0) * max(0.0, now - t0) / (t1 - t0)
+                return p0 + (p1 - p0) * (now - t0) / (t1 - t0)
         return self.goals[-1] if self.goals else self.position
 
     def move(self, now, seconds):
@@ -158,7 +164,7 @@ class Controller:
 
     def run(self):
         demo, self.demo_index = rospy.get_param("~demo", False), -1
-        rate = rospy.Rate(rospy.get_param("~rate", 50))
+        rate = rospy.Rate(rospy.get_param("~rate", 50), reset=True)
         before = rospy.Time.now()
         while not rospy.is_shutdown():
             now = rospy.Time.now()
@@ -168,6 +174,9 @@ class Controller:
                 if now > before:
                     for joint in self.joints:
                         joint.move(now.to_sec(), (now - before).to_sec())
+                elif now < before:  # a bag or a simulator has begun again: trajectories have times of before
+                    for joint in self.joints:
+                        joint.times, joint.goals = [], []
                 before = now
                 message = JointState(
                     name=[joint.name for joint in self.joints],

@@ -74,6 +74,12 @@ void Runner::set_bone(const std::string& name, const RigidTransform& motion)
   set_bone_motion(*self_->model, name, motion, self_->target.bone);
 }
 
+std::vector<RigidTransform> Runner::bones() const
+{
+  const std::lock_guard<std::mutex> lock(self_->mutex);
+  return self_->target.bone;
+}
+
 void Runner::switch_effect(Effect effect, bool on)
 {
   const std::lock_guard<std::mutex> one_at_a_time(self_->switch_mutex);

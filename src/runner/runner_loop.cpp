@@ -1,4 +1,5 @@
 #include "frontalis/error.hpp"
+#include "frontalis/model/effects.hpp"
 #include "frontalis/runner/face_frame.hpp"
 #include "frontalis/runner/named_controls.hpp"
 #include "frontalis/solver/damping.hpp"
@@ -125,7 +126,7 @@ void Runner::Implementation::make_frame(bool renew_monitor)
       const auto field = settings.wanted_field ? settings.wanted_field() : std::nullopt;
       if (field == SkinField::lines && fine_lines)
         frame.field = frame.skin.line_height;
-      else if (field)
+      else if (field && presence_of(*model, Effect::output_fields).present)
         solver->skin_field(*field, frame.field);
       else
         frame.field.clear();
@@ -137,9 +138,12 @@ void Runner::Implementation::make_frame(bool renew_monitor)
       fail("the skin is no longer finite");
   }
   note_progress();
-  frame.bodies = bodies_in_face_frame(*solver, *model);
-  frame.has_bone_forces = settings.wants_bone_forces && settings.wants_bone_forces();
-  frame.bones = bones_in_face_frame(*solver, *model, frame.has_bone_forces);
+  if (!frame.failed)
+  {
+    frame.bodies = bodies_in_face_frame(*solver, *model);
+    frame.has_bone_forces = settings.wants_bone_forces && settings.wants_bone_forces();
+    frame.bones = bones_in_face_frame(*solver, *model, frame.has_bone_forces);
+  }
   if (guard)
     frame.guard = guard->counts();
   ++frame.sequence;

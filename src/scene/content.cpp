@@ -51,7 +51,12 @@ public:
 private:
   void put(double value) { text_ += ' ' + number_text(value); }
   void put(const std::string& text) { text_ += fmt::format(" {}:{}", text.size(), text); }
-  void put(const BonePose& pose) { add(pose.bone, pose.shift, pose.turn); }
+  void put(const BonePose& pose)
+  {
+    add(pose.bone, pose.shift, pose.turn);
+    if (pose.angle != 0)
+      add("angle", pose.angle);
+  }
   void put(const Region& region) { add(region.lower, region.upper); }
   template <class Kind, class = std::enable_if_t<std::is_enum_v<Kind>>>
   void put(Kind kind)

@@ -128,7 +128,7 @@ void read_time(const Node& node, SceneTime& time)
   time.damping = mapping.optional("damping").number(Dimension::rate, not_negative, time.damping);
   time.scaling = mapping.optional("scaling").number(Dimension::number, at_least_one, time.scaling);
   time.frame_rate =
-      mapping.optional("frame_rate").number(Dimension::rate, Bound{ 0, 10000, false, true }, time.frame_rate);
+      mapping.optional("frame_rate").number(Dimension::rate, Bound{ 0.1, 1000, true, true }, time.frame_rate);
   time.activation_slew =
       mapping.optional("activation_slew").number(Dimension::rate, not_negative, time.activation_slew);
 }

@@ -151,6 +151,8 @@ TEST_F(RunModes, a_movie_has_a_picture_per_frame)
   EXPECT_EQ(left.substr(16, 8), std::string("\0\0\0\x96\0\0\0\xbe", 8)) << "150 by 190 pixels, in the header";
   ASSERT_EQ(run_to("pictures", { "--view", "front" }).code, 0);
   EXPECT_TRUE(text_of(folder / "pictures/frame_0000.png") != oblique);
+  std::filesystem::create_directories(folder / "it's.gif.frames");
+  folder.write("it's.gif.frames/notes.txt", "mine");
   const auto joined = run_to("it's.gif");
   if (joined.code != 0 && joined.errors.find("imagemagick") != std::string::npos)
     GTEST_SKIP() << joined.errors;
@@ -163,16 +165,20 @@ TEST_F(RunModes, a_movie_has_a_picture_per_frame)
     if (gif[at + 4] == 2 && gif[at + 5] == 0)
       ++shown;
   EXPECT_EQ(shown, 6);
-  EXPECT_FALSE(std::filesystem::exists(folder / "it's.gif.frames"));
+  EXPECT_EQ(text_of(folder / "it's.gif.frames/notes.txt"), "mine");
+  EXPECT_FALSE(std::filesystem::exists(folder / "it's.gif.frames/frame_0000.png"));
 }
 
 TEST_F(RunModes, a_movie_that_cannot_be_made_is_an_error_before_the_motion)
 {
+  std::filesystem::create_directories(folder / "frames");
+  folder.write("frames/skin_0000.ply", "of an earlier run");
   const ProgramResult result = run_program({ "run", std::string(FRONTALIS_SOURCE_DIRECTORY) + "/test/ros/small.yaml",
                                              "--expression", "shorten", "--seconds", "0.1", "--frame-rate", "30",
                                              "--frames", folder / "frames", "--movie", folder / "a.gif" });
   EXPECT_EQ(result.code, 1);
   expect_contains(result.errors, "a GIF cannot have 30 frames per second");
+  EXPECT_EQ(text_of(folder / "frames/skin_0000.ply"), "of an earlier run");
 }
 
 TEST_F(RunModes, the_ledger_of_a_shortening_bar_closes)

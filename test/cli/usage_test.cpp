@@ -55,6 +55,7 @@ TEST(Usage, wrong_options_end_with_2_and_one_message)
     { "rest", scene, "-o", "rest.vtkhdf", "--creases", "smile" },
     { "rest", scene, "-o", "rest.vtkhdf", "--neutral", "--set", "0.5" },
     { "retarget", scene, "-o", "found.csv" },
+    { "gltf", scene, "-o", "found.csv" },
     { "calibrate", scene, "joints.csv", "landmarks.csv" },
     { "verify", "--only", "no_such_case" },
   };
@@ -78,6 +79,8 @@ TEST(Files, that_are_missing_or_cannot_be_written_are_told)
                                                      { "bake", absent, "-o", folder / "m.vtkhdf" },
                                                      { "bake", scene, "-o", folder / "none/m.vtkhdf" },
                                                      { "bake", scene, "-o", folder.path() },
+                                                     { "gltf", scene, "-o", folder / "none/face.glb" },
+                                                     { "faces", scene, "--json", folder / "none/faces.json" },
                                                      { "bake", scene, "-o", scene } })
   {
     const ProgramResult result = run_program(arguments);

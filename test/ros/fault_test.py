@@ -50,6 +50,11 @@ class Fault(unittest.TestCase):
     def test_bad_parameters_are_told_all_at_once(self):
         self.check("/bad_parameters", "~scene nor ~model", "pace", "'slow'", "lock_step", "threads", "backend")
 
+    def test_parameters_of_the_wrong_type(self):
+        self.check("/bad_texts", "bone_frames: has the wrong type; allowed is a mapping", "effects_off", "'viscocity'",
+                   "damping: has the wrong type")
+        self.check("/bad_frames", "bone_frames/jaw: allowed is the name of a frame, or a mapping with frame and rest")
+
     def test_program_that_is_not_there(self):
         self.check("/no_program", "/nowhere/frontalis")
 

@@ -170,6 +170,16 @@ class Inputs(unittest.TestCase):
         self.send("bone_pose", pose)
         self.step(2)
         self.assertAlmostEqual(self.tip(), rest, 4)
+        # from where that message has moved it, a further pose takes the bone to rest over its onset
+        pose.transform.translation.x, pose.transform.translation.z = 0, 0.004
+        self.send("bone_pose", pose)
+        self.step(2)
+        self.assertAlmostEqual(self.tip() - rest, 0.004, 4)
+        self.send("expression", Expression(name=["relax"], onset=1))
+        self.step(0.5)
+        self.assertAlmostEqual(self.tip() - rest, 0.002, 3)
+        self.step(2)
+        self.assertAlmostEqual(self.tip(), rest, 4)
 
     def test_watchdog_relaxes_a_face_without_controller(self):
         self.config.update_configuration({"command_timeout": 0.4, "relax_time": 0.2})

@@ -67,6 +67,10 @@ class Robot(unittest.TestCase):
         wait(lambda: not any(position for position, _ in self.joints.values()), "joints at rest")
         self.step_until(lambda: all(abs(self.moved(name, 2)) < 3e-4 for name in self.rest), "the face at rest")
 
+    def test_waits_for_a_trajectory_that_begins_later_and_jumps(self):
+        self.send(BROW, LIFT, seconds=0, begins_in=0.5)
+        wait(lambda: self.joints.get(BROW, [0])[0] == LIFT, "the joint")
+
     def test_moves_and_feels_its_skin(self):
         self.send(BROW, LIFT)
         wait(lambda: self.joints.get(BROW, [0])[0] == LIFT, "the joint")

@@ -321,6 +321,18 @@ TEST(Runner, FieldsOfTheSkinAreComputedWhereSomebodyWantsThem)
   EXPECT_TRUE(runner.step(0.01).field.empty());
 }
 
+TEST(Runner, AFaceWithoutFieldsOfTheSkinGoesOn)
+{
+  Model without = *bar();
+  without.switched_off.push_back(name_of(Effect::output_fields));
+  RunnerSettings wanted = settings(Pace::lock_step);
+  wanted.wanted_field = [] { return SkinField::strain; };
+  Runner runner(std::make_shared<const Model>(without), wanted, {});
+  const Frame frame = runner.step(0.01);
+  EXPECT_FALSE(frame.failed) << frame.failure;
+  EXPECT_TRUE(frame.field.empty());
+}
+
 TEST(Runner, FrameRatesThatMakeNoSenseAreRefused)
 {
   for (const double rate : { 1e-3, 1e9 })

@@ -233,7 +233,7 @@ TEST(EveryKey, ways_to_give_fibres)
 TEST(EveryKey, action_units_and_weakness)
 {
   const Scene& scene = every_key();
-  ASSERT_EQ(scene.action_units.size(), 2U);
+  ASSERT_EQ(scene.action_units.size(), 3U);
   const FacePose& closed = scene.action_units.at("AU43");
   EXPECT_EQ(closed.activation.at("other"), -0.5);
   ASSERT_EQ(closed.bones.size(), 1U);

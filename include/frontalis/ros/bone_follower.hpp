@@ -19,11 +19,12 @@ class BoneFollower
 {
 public:
   /// Listens to tf2 if there are frames. `speed`: greatest speed of a bone [m/s]; a rotation counts as the motion of
-  /// points 0.1 m from the origin. `patience`: greatest age of a transform [s of ROS time].
-  BoneFollower(std::vector<BoneFrame> frames, std::string face_frame, double speed, double patience);
+  /// points 0.1 m from the origin.
+  BoneFollower(std::vector<BoneFrame> frames, std::string face_frame, double speed);
 
   /// The motions in the face frame of the bones whose frames were ever seen. `seconds`: time since the previous call.
-  std::map<std::string, RigidTransform> follow(double seconds);
+  /// `patience`: greatest age of a transform [s of ROS time].
+  std::map<std::string, RigidTransform> follow(double seconds, double patience);
   /// Returns all bones to rest, as a reset of the face requires.
   void clear();
 
@@ -38,11 +39,11 @@ public:
 private:
   /// The motion that puts the bone at its frame's present pose. Throws a tf2::TransformException or an Error if the
   /// transform is missing or too old.
-  RigidTransform wanted(const BoneFrame& bone) const;
+  RigidTransform wanted(const BoneFrame& bone, double patience) const;
 
   const std::vector<BoneFrame> frames_;
   const std::string face_frame_;
-  const double speed_, patience_;
+  const double speed_;
   std::unique_ptr<tf2_ros::Buffer> buffer_;
   std::unique_ptr<tf2_ros::TransformListener> listener_;
   std::map<std::string, RigidTransform> motion_;

@@ -90,7 +90,7 @@ private:
   /// Commands all muscles, and the bones that expressions or action units of the model move.
   void take_pose(const char* topic, Runner& running, double now, const Controls& pose, const Timing& timing);
   void set_bones(Runner& running, double time) const;
-  Controls present_bones(double time) const;
+  Controls present_bones(const Runner& running, double time) const;
   std::map<std::string, double> present(double time) const;
   void check_stamp(const ros::Time& stamp) const;
   void end_demo(const char* topic);

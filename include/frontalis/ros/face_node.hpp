@@ -101,25 +101,26 @@ private:
   bool has_frame_ = false;
   bool frame_finite_ = true;
   std::uint64_t frames_dropped_ = 0;
-  std::string caption_;           ///< text of ~caption
-  double slowness_ = 0;           ///< how many times slower than real time the caption says; 0: nothing
-  std::string speed_report_;      ///< as it was logged; empty if it was not logged yet
-  ros::WallTime last_frame_;      ///< when the runner made the latest frame
-  ros::WallTime last_published_;  ///< when a frame was published the last time, new or repeated
+  std::optional<std::string> caption_;  ///< text of ~caption; none before the first one of a face
+  double slowness_ = 0;                 ///< how many times slower than real time the caption says; 0: nothing
+  std::string speed_report_;            ///< as it was logged; empty if it was not logged yet
+  ros::WallTime last_frame_;            ///< when the runner made the latest frame
+  ros::WallTime last_published_;        ///< when a frame was published the last time, new or repeated
 
   std::atomic<double> time_{ 0 };  ///< simulated time of the latest frame [s]
   std::atomic<bool> paused_{ false };
   std::atomic<bool> stopping_{ false };
-  std::mutex loading_mutex_;   ///< held while a model is made, so that one is made at a time
-  std::mutex stepping_mutex_;  ///< held during a call of ~step
+  std::atomic<std::uint64_t> resets_{ 0 };  ///< number of calls of ~reset
+  std::mutex loading_mutex_;                ///< held while a model is made, so that one is made at a time
+  std::mutex stepping_mutex_;               ///< held during a call of ~step
   std::uint64_t faces_made_ = 0;
   FaceInputs inputs_;
   std::vector<ros::ServiceServer> services_;
   ros::CallbackQueue loading_queue_;  ///< queue of ~load_scene, which may take minutes
   ros::AsyncSpinner loading_spinner_;
   boost::recursive_mutex server_mutex_;  ///< mutex of server_; protects config_ and switched_off_
-  FaceConfig config_ = FaceConfig::__getDefault__();
-  std::set<std::string> switched_off_;  ///< effects that the configuration has switched off
+  std::optional<FaceConfig> config_;     ///< the latest that was applied
+  std::set<std::string> switched_off_;   ///< effects that the configuration has switched off
   std::unique_ptr<dynamic_reconfigure::Server<FaceConfig>> server_;
   std::unique_ptr<FitAction> fit_;
   ros::WallTimer frame_timer_, diagnostics_timer_;

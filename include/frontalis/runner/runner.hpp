@@ -92,6 +92,8 @@ public:
   /// activations do. If there is no such bone, or the motion is not finite and rigid, nothing is changed and an Error
   /// is thrown.
   void set_bone(const std::string& name, const RigidTransform& motion);
+  /// The motions to which bones move, in the order of the model's bones, from rest in the model's frame.
+  std::vector<RigidTransform> bones() const;
 
   /// Switches an effect off or on between two frames and returns when the switch is done. Throws the Errors of
   /// Solver::switch_effect.

@@ -30,7 +30,6 @@
 
 namespace frontalis
 {
-
 namespace
 {
 
@@ -54,9 +53,8 @@ std::string stem(const std::string& muscle)
 /// The muscle of the other side; empty if the muscle has no side.
 std::string counterpart(const std::string& muscle)
 {
-  if (ends_with(muscle, "_left"))
-    return stem(muscle) + "_right";
-  return ends_with(muscle, "_right") ? stem(muscle) + "_left" : "";
+  const bool left = ends_with(muscle, "_left");
+  return left || ends_with(muscle, "_right") ? stem(muscle) + (left ? "_right" : "_left") : "";
 }
 
 QString words(std::string name)
@@ -195,18 +193,22 @@ void FacePanel::connect_to_face()
 {
   clear_muscles();
   message_->setText("no face yet");
+  state_.shutdown();
   const std::string face = face_->text().toStdString();
-  std::string fault;
-  if (!ros::names::validate(face, fault) || face.empty())
+  try
   {
-    message_->setText(QString::fromStdString("'" + face + "' is no name of a face: " + fault));
-    return;
+    if (face.empty())
+      throw ros::InvalidNameException("it is empty");
+    activation_ = handle_.advertise<MuscleActivation>(face + "/muscle_activation", 10);
+    action_units_ = handle_.advertise<ActionUnits>(face + "/action_units", 10);
+    expression_ = handle_.advertise<Expression>(face + "/expression", 10);
+    state_ = handle_.subscribe<SimulationState>(face + "/state", 1,
+                                                [this](const SimulationState::ConstPtr& state) { on_state(*state); });
   }
-  activation_ = handle_.advertise<MuscleActivation>(face + "/muscle_activation", 10);
-  action_units_ = handle_.advertise<ActionUnits>(face + "/action_units", 10);
-  expression_ = handle_.advertise<Expression>(face + "/expression", 10);
-  state_ = handle_.subscribe<SimulationState>(face + "/state", 1,
-                                              [this](const SimulationState::ConstPtr& state) { on_state(*state); });
+  catch (const ros::Exception& error)
+  {
+    message_->setText(QString::fromStdString("'" + face + "' is no name of a face: " + error.what()));
+  }
 }
 
 template <typename Service>
@@ -237,7 +239,7 @@ void FacePanel::poll()
     }
     else
       ++pending;
-  if (!slider_of_.empty() || asked_)
+  if (!slider_of_.empty() || asked_ || !state_)
     return;
   asked_ = true;
   call<ListMuscles>("list_muscles", ListMuscles(),
@@ -288,14 +290,12 @@ void FacePanel::show_muscles(const ListMuscles::Response& face)
     connect(slider, &QSlider::valueChanged, this, [this] { on_action_unit(); });
   }
   units_->setRowStretch(row, 1);
-  int button = 0;
   for (const std::string& name : face.expressions)
   {
     auto* const made = new QPushButton(words(name));
     made->setObjectName(QString::fromStdString("expression/" + name));
     connect(made, &QPushButton::clicked, this, [this, name] { express(name); });
-    expressions_->addWidget(made, button / 3, button % 3);
-    ++button;
+    expressions_->addWidget(made, expressions_->count() / 3, expressions_->count() % 3);
   }
 }
 
