@@ -15,6 +15,7 @@ struct FieldValue
   Vec3<T> gradient;  ///< close to a unit vector, shorter on ridges and in furrows
   T curvature;       ///< Frobenius norm of the Hessian [1/m]
   T reach;           ///< distance over which `curvature` describes the field well enough for a tangent plane [m]
+  SymmetricMatrix<T> hessian{};  ///< [1/m]
 };
 
 /// Largest error [m] of a tangent plane that replaces a level set. It is small, because changes of plane excite
@@ -80,7 +81,8 @@ FRONTALIS_LAW FieldValue<T> spline(const Samples& samples, const T& inverse_spac
   const T squared = xx * xx + yy * yy + zz * zz + T(2) * (xy * xy + xz * xz + yz * yz);
   return { sum(w[2], f), inverse_spacing * Vec3<T>{ sum(w[2], fx), sum(w[2], fy), sum(d[2], f) },
            inverse_spacing * inverse_spacing * N::sqrt(squared),
-           N::max(to_face * spacing, N::sqrt(N::of(plane_error) * spacing)) };
+           N::max(to_face * spacing, N::sqrt(N::of(plane_error) * spacing)),
+           scaled(inverse_spacing * inverse_spacing, SymmetricMatrix<T>{ xx, yy, zz, xy, xz, yz }) };
 }
 
 /// Distance of a point from a sphere as a FieldValue. The point has moved by `way` [m] from a place that is `offset`
@@ -92,9 +94,15 @@ FRONTALIS_LAW FieldValue<T> sphere_value(const T& distance, const Vec3<T>& offse
 {
   const Vec3<T> now = offset + way;
   const T from_centre = Number<T>::max(norm(now), T(1e-9));
+  const Vec3<T> n = (T(1) / from_centre) * now;
+  const T bend = T(1) / from_centre;
   // A difference of two lengths is the difference of their squares divided by their sum; this form avoids cancellation.
-  return { distance + dot(T(2) * offset + way, way) / (from_centre + norm(offset)), (T(1) / from_centre) * now,
-           T(1.4142136) / from_centre, from_centre };
+  return { distance + dot(T(2) * offset + way, way) / (from_centre + norm(offset)),
+           n,
+           T(1.4142136) / from_centre,
+           from_centre,
+           { bend * (T(1) - n.x * n.x), bend * (T(1) - n.y * n.y), bend * (T(1) - n.z * n.z), -bend * n.x * n.y,
+             -bend * n.x * n.z, -bend * n.y * n.z } };
 }
 
 }  // namespace physics

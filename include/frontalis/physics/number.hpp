@@ -80,6 +80,23 @@ struct Vec3
 };
 
 template <class T>
+struct SymmetricMatrix
+{
+  T xx, yy, zz, xy, xz, yz;
+};
+template <class T>
+FRONTALIS_LAW Vec3<T> operator*(const SymmetricMatrix<T>& m, const Vec3<T>& a)
+{
+  return { m.xx * a.x + m.xy * a.y + m.xz * a.z, m.xy * a.x + m.yy * a.y + m.yz * a.z,
+           m.xz * a.x + m.yz * a.y + m.zz * a.z };
+}
+template <class T>
+FRONTALIS_LAW SymmetricMatrix<T> scaled(const T& s, const SymmetricMatrix<T>& m)
+{
+  return { s * m.xx, s * m.yy, s * m.zz, s * m.xy, s * m.xz, s * m.yz };
+}
+
+template <class T>
 FRONTALIS_LAW Vec3<T> operator+(const Vec3<T>& a, const Vec3<T>& b)
 {
   return { a.x + b.x, a.y + b.y, a.z + b.z };

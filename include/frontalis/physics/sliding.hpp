@@ -20,6 +20,7 @@ struct LevelPlane
   Vec3<T> normal;  ///< unit vector towards larger distances from the surface
   T distance;      ///< distance of the point from the level set along the normal, to first order [m]
   T slip;          ///< how far the node may move before the plane's error exceeds plane_error, to second order [m]
+  SymmetricMatrix<T> bend{};  ///< the field's Hessian divided by the length of its gradient [1/m]
 };
 
 /// Finds the tangent plane of the set on which the field is `level` [m], from the field at a point where its gradient
@@ -30,7 +31,8 @@ FRONTALIS_LAW LevelPlane<T> level_plane(const FieldValue<T>& field, const T& lev
   using N = Number<T>;
   const T scale = T(1) / slope;
   return { scale * field.gradient, scale * (field.value - level),
-           N::min(N::sqrt(N::of(2 * plane_error) * slope / N::max(field.curvature, N::of(1e-6))), field.reach) };
+           N::min(N::sqrt(N::of(2 * plane_error) * slope / N::max(field.curvature, N::of(1e-6))), field.reach),
+           scaled(scale, field.hessian) };
 }
 /// Returns false, and leaves `plane` unchanged, if the gradient is too short.
 template <class T>
@@ -71,11 +73,12 @@ FRONTALIS_LAW T slide(const Vec3<T>& normal, const T& offset, Vec3<T>& u, Vec3<T
 template <class T>
 FRONTALIS_LAW Vec3<T> turned_with_normal(const Vec3<T>& from, const Vec3<T>& to, const Vec3<T>& v)
 {
+  using N = Number<T>;
   const T cosine = dot(from, to);
-  if (!(cosine > Number<T>::of(0.955)))
-    return v;
   const Vec3<T> sum = from + to;
-  return v - (dot(sum, v) / (cosine + Number<T>::of(1))) * sum + (Number<T>::of(2) * dot(from, v)) * to;
+  const Vec3<T> turned = v - (dot(sum, v) / (cosine + N::of(1))) * sum + (N::of(2) * dot(from, v)) * to;
+  const auto smooth = cosine > N::of(0.955);
+  return { N::select(smooth, turned.x, v.x), N::select(smooth, turned.y, v.y), N::select(smooth, turned.z, v.z) };
 }
 
 /// Fraction of its tangential speed that a sliding node loses to Coulomb friction in one step, in which the constraint

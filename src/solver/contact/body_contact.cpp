@@ -2,7 +2,7 @@
 
 #include "frontalis/model/sample_field.hpp"
 #include "solver/contact/contact_stiffness.hpp"
-#include "solver/contact/gliding_nodes.hpp"
+#include "solver/contact/bone_pose.hpp"
 
 #include <cmath>
 #include <limits>

@@ -1,7 +1,7 @@
 #include "solver/contact/past_rim.hpp"
 
 #include "frontalis/model/sample_field.hpp"
-#include "solver/contact/gliding_nodes.hpp"
+#include "solver/contact/bone_pose.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -19,6 +19,19 @@ struct SlidingBlock
   Real slip_squared[width];  ///< squared distance over which the plane is valid; negative: the node has no plane yet
 };
 
+/// What surfaces with friction need of the nodes of a SlidingBlock; `speed` of the block is not used then.
+template <class Real>
+struct RoughBlock
+{
+  static constexpr int width = SlidingBlock<Real>::width;
+
+  Real bend[6][width];              ///< physics::CurvedLevel::bend: xx, yy, zz, xy, xz, yz
+  Real surface_velocity[3][width];  ///< [m/s]
+  Real coefficient[width];          ///< of friction
+  Real outward[3][width];           ///< normal in the latest step; 0: none
+  Real pressing[width];             ///< reaction per mass, delayed as friction is (physics::friction_response()) [m/s2]
+};
+
 /// A block in which nodes have left the range of their planes.
 struct WaitingBlock
 {
@@ -32,6 +45,9 @@ template <class Real>
 struct SlideArguments
 {
   const SlidingBlock<Real>* blocks;
+  RoughBlock<Real>* rough;    ///< of each block; null if no surface has friction
+  Real rubbing;               ///< factor on coefficients of friction
+  Real response, dt;          ///< physics::friction_response(); length of the step [s]
   const std::int32_t* node;   ///< first node of each block
   const std::int32_t* count;  ///< nodes in each block
   Real* u[3];
@@ -51,8 +67,8 @@ struct PlaneBatch
   float place[3][width];      ///< as physics::enter_cell() returns it
   float inverse_spacing[width], level[width];
   // Found by the kernel:
-  float normal[3][width], distance[width], slip[width];  ///< physics::LevelPlane
-  float slope[width];                                    ///< length of the field's gradient
+  float normal[3][width], distance[width], slip[width], bend[6][width];  ///< physics::LevelPlane
+  float slope[width];                                                    ///< length of the field's gradient
 };
 using PlaneKernel = void (*)(PlaneBatch& batch);
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "frontalis/physics/sliding.hpp"
+#include "frontalis/physics/element/sliding_node.hpp"
 #include "solver/cpu/field_lanes.hpp"
 #include "solver/cpu/slide_kernel.hpp"
 
@@ -46,12 +46,40 @@ struct SlideKernelBody
       const Vector normal = load(b.normal[0] + l, b.normal[1] + l, b.normal[2] + l);
       physics::slide(normal, load(b.offset + l), at, velocity);
       velocity = velocity + load(b.speed + l) * normal;
-      at.x.store_unaligned(u[0] + l);
-      at.y.store_unaligned(u[1] + l);
-      at.z.store_unaligned(u[2] + l);
-      velocity.x.store_unaligned(v[0] + l);
-      velocity.y.store_unaligned(v[1] + l);
-      velocity.z.store_unaligned(v[2] + l);
+      store(at, u[0] + l, u[1] + l, u[2] + l);
+      store(velocity, v[0] + l, v[1] + l, v[2] + l);
+    }
+  }
+
+  static void store(const Vector& v, float* x, float* y, float* z)
+  {
+    v.x.store_unaligned(x);
+    v.y.store_unaligned(y);
+    v.z.store_unaligned(z);
+  }
+
+  static void glide(const SlideArguments<float>& g, std::int32_t block, float* const u[3], float* const v[3])
+  {
+    const Block& b = g.blocks[block];
+    RoughBlock<float>& r = g.rough[block];
+    for (int l = 0; l < Block::width; l += lanes)
+    {
+      const physics::CurvedLevel<Batch> level{ load(b.normal[0] + l, b.normal[1] + l, b.normal[2] + l),
+                                               load(b.offset + l),
+                                               load(b.reference[0] + l, b.reference[1] + l, b.reference[2] + l),
+                                               { load(r.bend[0] + l), load(r.bend[1] + l), load(r.bend[2] + l),
+                                                 load(r.bend[3] + l), load(r.bend[4] + l), load(r.bend[5] + l) },
+                                               load(r.surface_velocity[0] + l, r.surface_velocity[1] + l,
+                                                    r.surface_velocity[2] + l) };
+      Vector outward = load(r.outward[0] + l, r.outward[1] + l, r.outward[2] + l);
+      Vector at = load(u[0] + l, u[1] + l, u[2] + l), velocity = load(v[0] + l, v[1] + l, v[2] + l);
+      Batch pressing = load(r.pressing + l);
+      physics::glide(level, Batch(g.rubbing) * load(r.coefficient + l), Batch(g.response), Batch(g.dt), outward,
+                     pressing, at, velocity);
+      store(outward, r.outward[0] + l, r.outward[1] + l, r.outward[2] + l);
+      pressing.store_unaligned(r.pressing + l);
+      store(at, u[0] + l, u[1] + l, u[2] + l);
+      store(velocity, v[0] + l, v[1] + l, v[2] + l);
     }
   }
 
@@ -79,7 +107,10 @@ struct SlideKernelBody
         g.waiting[waiting++] = { block, bits };
         continue;
       }
-      slide(g.blocks[block], whole ? u : u_copy, whole ? v : v_copy);
+      if (g.rough != nullptr)
+        glide(g, block, whole ? u : u_copy, whole ? v : v_copy);
+      else
+        slide(g.blocks[block], whole ? u : u_copy, whole ? v : v_copy);
       for (int axis = 0; axis < 3 && !whole; ++axis)
         for (std::int32_t l = 0; l < count; ++l)
         {
@@ -99,9 +130,12 @@ struct SlideKernelBody
                                          load(b.place[0] + l, b.place[1] + l, b.place[2] + l));
       const Batch slope = norm(value.gradient);
       const auto plane = physics::level_plane(value, load(b.level + l), slope);
-      plane.normal.x.store_unaligned(b.normal[0] + l);
-      plane.normal.y.store_unaligned(b.normal[1] + l);
-      plane.normal.z.store_unaligned(b.normal[2] + l);
+      store(plane.normal, b.normal[0] + l, b.normal[1] + l, b.normal[2] + l);
+      const Batch bend[6] = {
+        plane.bend.xx, plane.bend.yy, plane.bend.zz, plane.bend.xy, plane.bend.xz, plane.bend.yz
+      };
+      for (int i = 0; i < 6; ++i)
+        bend[i].store_unaligned(b.bend[i] + l);
       plane.distance.store_unaligned(b.distance + l);
       plane.slip.store_unaligned(b.slip + l);
       slope.store_unaligned(b.slope + l);

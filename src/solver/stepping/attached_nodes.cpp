@@ -1,7 +1,7 @@
 #include "solver/stepping/attached_nodes.hpp"
 
 #include "frontalis/model/sample_field.hpp"
-#include "solver/contact/gliding_nodes.hpp"
+#include "solver/contact/bone_pose.hpp"
 
 #include <algorithm>
 

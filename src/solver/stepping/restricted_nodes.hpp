@@ -1,7 +1,7 @@
 #pragma once
 
 #include "frontalis/model/model.hpp"
-#include "solver/contact/gliding_nodes.hpp"
+#include "solver/contact/kept_level.hpp"
 #include "solver/cpu/slide_kernel.hpp"
 #include "solver/stepping/node_part.hpp"
 
@@ -21,8 +21,9 @@ public:
   struct Carried
   {
     physics::Vec3<double> normal;
-    double height;                   ///< [m]
-    physics::Vec3<double> found_at;  ///< the place for which the plane was found [m]
+    double height;                          ///< [m]
+    physics::Vec3<double> found_at;         ///< the place for which the plane was found [m]
+    physics::SymmetricMatrix<double> bend;  ///< physics::LevelPlane::bend
   };
   /// Nodes of a block that slide on the same bone.
   struct Carrier
@@ -34,10 +35,9 @@ public:
   /// State of sliding nodes on their surfaces.
   struct Contacts
   {
-    /// state of all sliding nodes if any surface has friction
-    typename GlidingNodes<Real>::States gliding;
-    std::vector<Block> blocks;     ///< state of all sliding nodes otherwise
-    std::vector<Carried> carried;  ///< planes of the nodes of `blocks` that slide on bones
+    std::vector<Block> blocks;
+    std::vector<RoughBlock<Real>> rough;  ///< one per block if any surface has friction
+    std::vector<Carried> carried;         ///< planes of nodes that slide on bones
     std::vector<Carrier> carriers;
   };
 
@@ -57,10 +57,7 @@ public:
   /// the step, v* without constraints and v+ after the step. Mass [kg] and velocities are those of all nodes. Nodes are
   /// summed in order.
   double friction_loss(std::int32_t first, std::int32_t last, const std::vector<double>& mass,
-                       const Real* const before[3], const Real* const without[3], const Real* const after[3]) const
-  {
-    return slides_ ? gliding_.friction_loss(first, last, mass, before, without, after, contacts_.gliding) : 0;
-  }
+                       const Real* const before[3], const Real* const without[3], const Real* const after[3]) const;
   void run(EffectSet running) override;
   void list_arrays(ArrayList& list) override;
   bool idle() const override
@@ -75,6 +72,7 @@ private:
     KeptLevel level;
     std::int32_t bone;     // -1: the surface stands still
     std::int32_t carried;  // index into Contacts::carried, or -1
+    double friction;
   };
   /// A node that needs a new tangent plane.
   struct Renewal
@@ -96,6 +94,8 @@ private:
     std::int32_t node, count;
   };
   void make_blocks(const std::vector<SlidingNode>& nodes);
+  /// Index of the first block that does not begin before a node.
+  std::int32_t block_of(std::int32_t node) const;
   void follow_paths(std::int32_t first, std::int32_t last, Real* const u[3], Real* const v[3],
                     const Real* const before[3], const ConstraintStep& step);
   void hold_still(std::int32_t first, std::int32_t last, Real* const u[3], Real* const v[3]) const;
@@ -114,7 +114,6 @@ private:
   std::vector<MovedNode> rigid_;                // all lists are sorted by node
   std::vector<StillRun> still_;
   std::vector<PrescribedNode> prescribed_;
-  GlidingNodes<Real> gliding_;
   std::vector<Sliding> sliding_;
   std::int32_t carried_ = 0;  // number of nodes that slide on bones
   Contacts contacts_;

@@ -34,6 +34,39 @@ FRONTALIS_LAW void rub(const T& coefficient, const T& response, const T& dt, con
   u = u - dt * lost;
 }
 
+/// The level set on which a node slides near the displacement `reference`, to second order: the field's value and
+/// gradient divided by the gradient's length there are normal . u - offset + way . bend way / 2 and normal + bend way,
+/// with way = u - reference.
+template <class T>
+struct CurvedLevel
+{
+  Vec3<T> normal;
+  T offset;  ///< [m]
+  Vec3<T> reference;
+  SymmetricMatrix<T> bend;   ///< [1/m]
+  Vec3<T> surface_velocity;  ///< [m/s]
+};
+
+/// One step of a node on a surface with friction. Its plane turns with the level set, since the reaction would jump if
+/// a plane that was kept for several steps were replaced, and friction follows the reaction. `outward`: the normal of
+/// the step before, and then of this one; 0: none. A level whose normal is 0 changes nothing.
+template <class T>
+FRONTALIS_LAW void glide(const CurvedLevel<T>& level, const T& coefficient, const T& response, const T& dt,
+                         Vec3<T>& outward, T& pressing, Vec3<T>& u, Vec3<T>& v)
+{
+  using N = Number<T>;
+  const Vec3<T> way = u - level.reference, turn = level.bend * way, gradient = level.normal + turn;
+  const T scale = N::of(1) / N::max(norm(gradient), N::of(1e-6));
+  const Vec3<T> normal = scale * gradient;
+  const T distance = scale * (dot(level.normal, u) - level.offset + N::of(0.5) * dot(way, turn));
+  Vec3<T> velocity = v - level.surface_velocity;
+  T taken = turn_with_plane(outward, normal, velocity);
+  taken = taken + slide(normal, dot(normal, u) - distance, u, velocity);
+  rub(coefficient, response, dt, taken / dt, pressing, u, velocity);
+  outward = normal;
+  v = velocity + level.surface_velocity;
+}
+
 /// Energy per mass that friction dissipates at a node [m2/s2]: the impulse along the surface times the mean of the
 /// velocities before and after the step, relative to the surface. `free`: velocity without constraints.
 FRONTALIS_LAW double friction_work(const Vec3<double>& normal, const Vec3<double>& surface_velocity,
