@@ -54,8 +54,9 @@ CudaSolver::CudaSolver(const BackendInput& input, const std::string& remark)
     device_.viscosity().keep_account();
   }
   rest();
+  // as after each change of masses, so that equal masses have equal bits
   device_.take_masses(u_[0].data(), stream_);
-  // The first search takes as long as some hundred steps, which should not be the first ones.
+  // The first search takes as long as some hundred steps, which should not be the first ones. Its result is not used.
   if (model_->time_step_estimate == TimeStepEstimate::assembled)
     highest_frequency_squared();
 }

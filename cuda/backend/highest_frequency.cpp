@@ -142,10 +142,12 @@ std::vector<FoundMode> CudaSolver::modes_above(double frequency_squared)
       s.node_of_device[device_.device_node()[n]] = static_cast<std::int32_t>(n);
   }
   const std::vector<LanczosMatrix::Eigenpair> pairs = s.matrix.eigenpairs_above(frequency_squared);
+  if (pairs.empty())
+    return {};
   constexpr auto most_shares = static_cast<std::size_t>(1 / least_mode_share), entries = 1 + most_shares;
   if (s.shares.size() < pairs.size() * entries)
     s.shares = DeviceArray<uint2>(pairs.size() * entries);
-  require(cudaMemsetAsync(s.shares.data(), 0, s.shares.bytes(), stream_), "emptying lists");
+  require(cudaMemsetAsync(s.shares.data(), 0, pairs.size() * entries * sizeof(uint2), stream_), "emptying lists");
   for (std::size_t i = 0; i < pairs.size(); ++i)
     list_shares(pairs[i].vector, s.shares.data() + i * entries);
   synchronise();

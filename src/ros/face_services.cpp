@@ -74,12 +74,12 @@ bool FaceNode::on_step(Step::Request& request, Step::Response& response)
         frame.time = time_;
         double left = request.seconds;
         const std::uint64_t resets = resets_;
-        paused_ = true;  // set before the step, because its frames report it
         do
         {
           // Between two pieces no runner is there that could end the step.
           if (resets_ != resets || runner().get() != &running)
             throw Error("the step was ended early");
+          paused_ = true;  // set before the step, because its frames report it
           const double seconds = inputs_.timed(frame.time) && left > piece ? piece : left;
           inputs_.play(running, frame.time + seconds);
           left -= seconds;

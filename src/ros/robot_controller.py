@@ -168,15 +168,13 @@ class Controller:
         before = rospy.Time.now()
         while not rospy.is_shutdown():
             now = rospy.Time.now()
-            if demo:
-                self.play_demo(now.to_sec())
             with self.mutex:
                 if now > before:
                     for joint in self.joints:
                         joint.move(now.to_sec(), (now - before).to_sec())
                 elif now < before:  # a bag or a simulator has begun again: trajectories have times of before
                     for joint in self.joints:
-                        joint.times, joint.goals = [], []
+                        joint.times, joint.goals, joint.speed = [], [], 0.0
                 before = now
                 message = JointState(
                     name=[joint.name for joint in self.joints],
@@ -186,6 +184,8 @@ class Controller:
                 )
             message.header.stamp = now
             self.states.publish(message)
+            if demo:
+                self.play_demo(now.to_sec())
             try:
                 rate.sleep()
             except rospy.ROSInterruptException:

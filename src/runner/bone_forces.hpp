@@ -45,7 +45,7 @@ private:
 BoneForces::Vector carried(const BoneForces::Vector& normal, double friction, const BoneForces::Vector& force);
 
 /// Adds the forces of nodes that slide on surfaces of bones.
-void add_gliding_nodes(BoneForces& bones);
+void add_sliding_nodes(BoneForces& bones);
 /// Adds the forces of nodes that are attached at true boundaries.
 void add_attached_nodes(BoneForces& bones);
 

@@ -70,7 +70,7 @@ std::vector<BodyFrame> bones_in_face_frame(Solver& solver, const Model& model, b
     BoneForces bones(solver, model);
     for (const RigidNode& rigid : model.rigid)
       bones.add_at(rigid.bone, bones.place_of(rigid.node), bones.force_of(rigid.node));
-    add_gliding_nodes(bones);
+    add_sliding_nodes(bones);
     add_attached_nodes(bones);
     const std::vector<TouchedBody> touched = touched_bodies(model);
     const std::vector<Reaction> reactions = solver.reactions();

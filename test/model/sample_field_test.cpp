@@ -1,6 +1,6 @@
 #include "frontalis/model/sample_field.hpp"
 
-#include "frontalis/physics/sliding.hpp"
+#include "frontalis/physics/element/sliding_node.hpp"
 
 #include <gtest/gtest.h>
 
@@ -101,6 +101,18 @@ TEST(SampleField, ALevelPlaneStaysNearTheLevelSetOfASphereAsFarAsItSays)
     const auto there = value_at<double>(field, { rest[0], rest[1], rest[2] },
                                         Vec3<double>{ 20e-6, 0.4e-3, -0.3e-3 } - plane.distance * plane.normal + along);
     EXPECT_NEAR(there.value, level, physics::plane_error);
+    // To second order the level set and its normal are ten times as close, also past that.
+    const Vec3<double> reference{ 20e-6, 0.4e-3, -0.3e-3 };
+    const physics::CurvedLevel<double> curved{
+      plane.normal, dot(plane.normal, reference) - plane.distance, reference, plane.bend, { 0, 0, 0 }
+    };
+    Vec3<double> normal{};
+    double off = 0;
+    curved.at(reference - plane.distance * plane.normal + along, normal, off);
+    const double slope = std::sqrt(dot(there.gradient, there.gradient));
+    EXPECT_NEAR(off, (there.value - level) / slope, 0.1 * physics::plane_error);
+    const Vec3<double> turned = normal - (1 / slope) * there.gradient, turn = normal - plane.normal;
+    EXPECT_LT(std::sqrt(dot(turned, turned)), 0.1 * std::sqrt(dot(turn, turn)));
   }
 }
 

@@ -76,7 +76,7 @@ FRONTALIS_LAW Vec3<T> turned_with_normal(const Vec3<T>& from, const Vec3<T>& to,
   using N = Number<T>;
   const T cosine = dot(from, to);
   const Vec3<T> sum = from + to;
-  const Vec3<T> turned = v - (dot(sum, v) / (cosine + N::of(1))) * sum + (N::of(2) * dot(from, v)) * to;
+  const Vec3<T> turned = v - (dot(sum, v) / N::max(cosine + N::of(1), N::of(1))) * sum + (N::of(2) * dot(from, v)) * to;
   const auto smooth = cosine > N::of(0.955);
   return { N::select(smooth, turned.x, v.x), N::select(smooth, turned.y, v.y), N::select(smooth, turned.z, v.z) };
 }

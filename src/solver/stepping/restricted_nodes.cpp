@@ -8,7 +8,6 @@
 #include "solver/stepping/attached_blocks.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -113,6 +112,7 @@ void RestrictedNodes<Real>::run(EffectSet running)
   rubs_ = running.has(Effect::friction);
   if (!slides_)
     reset();
+  // The reaction is followed while friction is off, too.
   for (auto& rough : contacts_.rough)
     if (switched)
       std::fill_n(rough.pressing, Block::width, Real(0));
@@ -126,7 +126,7 @@ void RestrictedNodes<Real>::list_arrays(ArrayList& list)
   list.add(Effect::prescribed_displacement, "prescribed nodes", prescribed_);
   list.add(Effect::sliding, "nodes that slide", sliding_);
   list.add_state(Effect::sliding, "tangent planes", contacts_.blocks);
-  list.add_state(Effect::friction, "reactions", contacts_.rough);
+  list.add_state(Effect::friction, "planes with friction", contacts_.rough);
   list.add_state(Effect::sliding, "tangent planes", contacts_.carried);
   list.add_state(Effect::sliding, "tangent planes", contacts_.carriers);
   list.add(Effect::sliding, "tangent planes", block_node_);
@@ -171,7 +171,8 @@ double RestrictedNodes<Real>::friction_loss(std::int32_t first, std::int32_t las
   double lost = 0;
   if (contacts_.rough.empty() || !slides_ || !rubs_)
     return lost;
-  for (std::int32_t block = block_of(first); block < block_of(last); ++block)
+  const std::int32_t end = block_of(last);
+  for (std::int32_t block = block_of(first); block < end; ++block)
   {
     const RoughBlock<Real>& rough = contacts_.rough[block];
     for (std::int32_t lane = 0; lane < block_count_[block]; ++lane)

@@ -105,6 +105,7 @@ private:
   void renew(const WaitingBlock* waiting, std::int32_t count, Real* const u[3], Real* const v[3],
              const ConstraintStep& step);
   void renew_batch(Renewal* renewals, int count, Real* const u[3], Real* const v[3], const ConstraintStep& step);
+  void flatten(const Renewal& renewal, Real* const u[3], Real* const v[3], const ConstraintStep& step);
   void take(const Renewal& renewal, const physics::LevelPlane<double>& plane, Real* const u[3], Real* const v[3],
             const ConstraintStep& step);
 

@@ -8,8 +8,7 @@ namespace frontalis
 namespace physics
 {
 
-// One step of a node that slides on a surface: slide() moves it back to its tangent plane, rub() applies friction. On a
-// bone, the step is done in the bone's frame: relative_to() converts to it, and the pose converts back.
+// One step of a node that slides on a surface: slide() moves it back to its tangent plane, rub() applies friction.
 
 /// Rotates a node's velocity as its tangent plane rotates from the normal `from` to the normal `to`. Returns the normal
 /// speed that this removes, a part of the surface's reaction.
@@ -45,6 +44,16 @@ struct CurvedLevel
   Vec3<T> reference;
   SymmetricMatrix<T> bend;   ///< [1/m]
   Vec3<T> surface_velocity;  ///< [m/s]
+
+  /// The unit normal at the displacement u, and the distance from the level set along it [m].
+  FRONTALIS_LAW void at(const Vec3<T>& u, Vec3<T>& normal_there, T& distance) const
+  {
+    using N = Number<T>;
+    const Vec3<T> way = u - reference, turn = bend * way, gradient = normal + turn;
+    const T scale = N::of(1) / N::max(norm(gradient), N::of(1e-6));
+    normal_there = scale * gradient;
+    distance = scale * (dot(normal, u) - offset + N::of(0.5) * dot(way, turn));
+  }
 };
 
 /// One step of a node on a surface with friction. Its plane turns with the level set, since the reaction would jump if
@@ -54,11 +63,9 @@ template <class T>
 FRONTALIS_LAW void glide(const CurvedLevel<T>& level, const T& coefficient, const T& response, const T& dt,
                          Vec3<T>& outward, T& pressing, Vec3<T>& u, Vec3<T>& v)
 {
-  using N = Number<T>;
-  const Vec3<T> way = u - level.reference, turn = level.bend * way, gradient = level.normal + turn;
-  const T scale = N::of(1) / N::max(norm(gradient), N::of(1e-6));
-  const Vec3<T> normal = scale * gradient;
-  const T distance = scale * (dot(level.normal, u) - level.offset + N::of(0.5) * dot(way, turn));
+  Vec3<T> normal;
+  T distance;
+  level.at(u, normal, distance);
   Vec3<T> velocity = v - level.surface_velocity;
   T taken = turn_with_plane(outward, normal, velocity);
   taken = taken + slide(normal, dot(normal, u) - distance, u, velocity);
@@ -76,28 +83,11 @@ FRONTALIS_LAW double friction_work(const Vec3<double>& normal, const Vec3<double
   return -dot(along, 0.5 * (before + after) - surface_velocity);
 }
 
-/// Motion of a node relative to a bone.
-struct RelativeMotion
-{
-  Vec3<double> place, velocity;   ///< in the frame of the bone [m], [m/s]
-  Vec3<double> surface_velocity;  ///< velocity of the bone at the node, in the scene's frame [m/s]
-};
-
 /// Velocity [m/s] of a bone at the place p [m], p in the bone's frame, from its poses at the end and start of the step;
 /// rate: 1 / dt.
 FRONTALIS_LAW Vec3<double> surface_velocity(const Pose& now, const Pose& before, double rate, const Vec3<double>& p)
 {
   return rate * (now.outwards(p) - before.outwards(p));
-}
-
-/// Finds the motion of a node relative to a bone. now, before: pose of the bone at the end and start of the step; rate:
-/// 1 / dt; place, v: position and velocity of the node after its update.
-FRONTALIS_LAW RelativeMotion relative_to(const Pose& now, const Pose& before, double rate, const Vec3<double>& place,
-                                         const Vec3<double>& v)
-{
-  const Vec3<double> p = now.inwards(place);
-  const Vec3<double> of_surface = surface_velocity(now, before, rate, p);
-  return { p, now.turned_back(v - of_surface), of_surface };
 }
 
 }  // namespace physics

@@ -6,6 +6,9 @@
 #include "solver/stepping/restricted_nodes.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <type_traits>
 #include <utility>
 
 namespace frontalis
@@ -136,6 +139,8 @@ void RestrictedNodes<Real>::renew_batch(Renewal* renewals, int count, Real* cons
     {
       if (physics::LevelPlane<double> plane{}; s.level.plane_at(renewal.place, plane))
         take(renewal, plane, u, v, step);
+      else
+        flatten(renewal, u, v, step);
       continue;
     }
     auto point = physics::field_point(field, renewal.place);
@@ -158,12 +163,11 @@ void RestrictedNodes<Real>::renew_batch(Renewal* renewals, int count, Real* cons
     sampled[l] = batch.first[l] != nullptr;
     some = sampled[l] ? batch.first[l] : some;
   }
-  if (some == nullptr)
-    return;
   // Lanes without samples take those of another, and the result is not used.
   for (int l = 0; l < width; ++l)
     batch.first[l] = sampled[l] ? batch.first[l] : some;
-  kernels_.planes(batch);
+  if (some != nullptr)
+    kernels_.planes(batch);
   for (int l = 0; l < filled; ++l)
     if (sampled[l] && batch.slope[l] > static_cast<float>(physics::least_gradient))
       take(renewals[l],
@@ -173,6 +177,36 @@ void RestrictedNodes<Real>::renew_batch(Renewal* renewals, int count, Real* cons
              { double(batch.bend[0][l]), double(batch.bend[1][l]), double(batch.bend[2][l]), double(batch.bend[3][l]),
                double(batch.bend[4][l]), double(batch.bend[5][l]) } },
            u, v, step);
+    else
+      flatten(renewals[l], u, v, step);
+}
+
+// Where no new plane can be found, a node keeps its latest one. One that turned with its level set does so no more.
+template <class Real>
+void RestrictedNodes<Real>::flatten(const Renewal& renewal, Real* const u[3], Real* const v[3],
+                                    const ConstraintStep& step)
+{
+  const int lane = renewal.lane;
+  const Block& b = contacts_.blocks[renewal.block];
+  if (contacts_.rough.empty() || b.slip_squared[lane] < 0)
+    return;
+  const RoughBlock<Real>& rough = contacts_.rough[renewal.block];
+  const std::int32_t bone = sliding_[renewal.index].bone, n = block_node_[renewal.block] + lane;
+  const bool turns =
+      std::any_of(std::begin(rough.bend), std::end(rough.bend), [&](const auto& of) { return of[lane] != 0; });
+  if (!turns || !std::isfinite(u[0][n] + u[1][n] + u[2][n]))
+    return;
+  const physics::CurvedLevel<double> level{ { b.normal[0][lane], b.normal[1][lane], b.normal[2][lane] },
+                                            b.offset[lane],
+                                            { b.reference[0][lane], b.reference[1][lane], b.reference[2][lane] },
+                                            { rough.bend[0][lane], rough.bend[1][lane], rough.bend[2][lane],
+                                              rough.bend[3][lane], rough.bend[4][lane], rough.bend[5][lane] },
+                                            { 0, 0, 0 } };
+  physics::LevelPlane<double> plane{};
+  level.at({ u[0][n], u[1][n], u[2][n] }, plane.normal, plane.distance);
+  if (bone >= 0)
+    plane.normal = pose_of(step.bone[bone]).turned_back(plane.normal);
+  take(renewal, plane, u, v, step);
 }
 
 // Gives a node a new plane. Without friction its velocity is turned with the plane; physics::glide() does so in each
@@ -214,11 +248,11 @@ void RestrictedNodes<Real>::take(const Renewal& renewal, const physics::LevelPla
   b.slip_squared[lane] = static_cast<Real>(plane.slip * plane.slip);
 }
 
-#define FRONTALIS_SLIDING_PLANES(Real)                                                                          \
-  template void RestrictedNodes<Real>::carry(Carrier&, const Real* const[3], const ConstraintStep&);            \
-  template void RestrictedNodes<Real>::renew(const WaitingBlock*, std::int32_t, Real* const[3], Real* const[3], \
+template void RestrictedNodes<float>::carry(Carrier&, const float* const[3], const ConstraintStep&);
+template void RestrictedNodes<double>::carry(Carrier&, const double* const[3], const ConstraintStep&);
+template void RestrictedNodes<float>::renew(const WaitingBlock*, std::int32_t, float* const[3], float* const[3],
+                                            const ConstraintStep&);
+template void RestrictedNodes<double>::renew(const WaitingBlock*, std::int32_t, double* const[3], double* const[3],
                                              const ConstraintStep&);
-FRONTALIS_SLIDING_PLANES(float)
-FRONTALIS_SLIDING_PLANES(double)
 
 }  // namespace frontalis

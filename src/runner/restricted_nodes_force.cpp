@@ -12,7 +12,7 @@ BoneForces::Vector carried(const BoneForces::Vector& normal, double friction, co
   return pressing + (drag > held ? held / drag : 1) * dragging;
 }
 
-void add_gliding_nodes(BoneForces& bones)
+void add_sliding_nodes(BoneForces& bones)
 {
   if (!bones.effects.has(Effect::sliding))
     return;
