@@ -11,7 +11,7 @@ namespace
 // Wavelength of fine lines divided by the longest edge allowed. The mean edge is about half as long, so that a
 // wavelength has eight edges or more.
 constexpr double edges_per_line = 4.5;
-constexpr double vertices_per_edge_area = 5;  // measured number of vertices per square of the longest edge
+constexpr double vertices_per_edge_area = 6;  // vertices per square of the longest edge; 6 to 9 in the head
 constexpr double most_vertices = 2e6;
 constexpr double coarsening = 0.5;  // growth of edges per distance from the region in which lines are wanted
 
