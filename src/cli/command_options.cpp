@@ -18,7 +18,8 @@ void add_backend_option(CLI::App& command, Backend& backend, bool automatic)
 void add_solver_options(CLI::App& command, SolverSettings& settings)
 {
   add_backend_option(command, settings.backend, true);
-  command.add_option("--threads", settings.threads, "CPU threads (0: one per core)")->check(CLI::Range(0, 1024));
+  command.add_option("--threads", settings.threads, "CPU threads at most (0: one per core)")
+      ->check(CLI::Range(0, 1024));
 }
 
 void check_seconds(double seconds)

@@ -98,7 +98,6 @@ RenderMesh painted_teeth(const TriangleMesh& surface, bool lower, double corner_
     front = std::max(front, p[0]);
   }
   halve(mesh);
-  halve(mesh);
   const Row& row = lower ? lower_row : upper_row;
   const double up = lower ? -1 : 1, depth = arch_depth * half_width;
   mesh.colours.reserve(mesh.vertices.size());

@@ -1,10 +1,11 @@
 #!/usr/bin/python3
 """Measures how often a running face publishes, and how long it takes to end.
 
-usage: rates.py [SCENE] [LAUNCH_ARGUMENT:=VALUE ...]
+usage: rates.py [SCENE] [topics:=TOPIC,...] [LAUNCH_ARGUMENT:=VALUE ...]
 
 Launches a scene of config/ (forehead) with its demo, at 60 frames per second and accuracy draft unless the arguments of face.launch say
-otherwise, and counts for ten seconds what a program receives of its topics. Needs the environment of the package's setup file.
+otherwise, and counts for 24 seconds what a program receives of its topics. topics:= names those to which it subscribes beside ~state
+(skin,skin_points,landmarks). The real-time factor is the mean over this time. Needs the environment of the package's setup file.
 """
 
 import os
@@ -15,18 +16,18 @@ import sys
 import time
 import xmlrpc.client
 
-TOPICS = ("state", "skin", "skin_points", "landmarks")
-WARM_UP, SECONDS = 5, 10  # [s] of wall time
+TOPICS = "skin,skin_points,landmarks"
+WARM_UP, SECONDS = 5, 24  # [s] of wall time
 TIMEOUT = 1200  # [s], for the bake
 
 
-def measure(launch):
+def measure(launch, topics):
     import rosgraph
     import rospy
     from frontalis.msg import SimulationState
 
     rospy.init_node("rates", disable_signals=True)
-    counts = dict.fromkeys(TOPICS, 0)
+    counts = dict.fromkeys(topics, 0)
     states = []
 
     def count(message, topic):
@@ -35,7 +36,7 @@ def measure(launch):
             states.append(message)
 
     # other messages are not decoded, which would take longer than to receive them
-    for topic in TOPICS:
+    for topic in topics:
         rospy.Subscriber("/face/" + topic, SimulationState if topic == "state" else rospy.AnyMsg, count, topic)
     deadline = time.monotonic() + TIMEOUT
     while not all(counts.values()):
@@ -43,13 +44,14 @@ def measure(launch):
             sys.exit("rates: the face did not start")
         time.sleep(0.2)
     time.sleep(WARM_UP)
-    before, begin = dict(counts), time.monotonic()
+    before, begin, first = dict(counts), time.monotonic(), states[-1]
     time.sleep(SECONDS)
     elapsed = time.monotonic() - begin
-    rates = {topic: (counts[topic] - before[topic]) / elapsed for topic in TOPICS}
+    rates = {topic: (counts[topic] - before[topic]) / elapsed for topic in topics}
     state = states[-1]
+    factor = (state.time - first.time) / (state.wall_time - first.wall_time)
     print("%s; %d voxels, skin of %d vertices; real-time factor %.3f; load of the machine %.1f on %d cores"
-          % (state.backend, state.voxels, state.skin_vertices, state.real_time_factor, os.getloadavg()[0], os.cpu_count()))
+          % (state.backend, state.voxels, state.skin_vertices, factor, os.getloadavg()[0], os.cpu_count()))
     for topic, rate in rates.items():
         print("~%-12s %5.1f per second" % (topic, rate))
     pid = xmlrpc.client.ServerProxy(rosgraph.Master("rates").lookupNode("/face")).getPid("rates")[2]
@@ -72,10 +74,11 @@ def main():
     path = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../config", scene + ".yaml")
     defaults = {"rviz": "false", "demo": "true", "accuracy": "draft", "frame_rate": "60"}
     defaults.update(a.split(":=", 1) for a in arguments)
+    topics = ["state"] + defaults.pop("topics", TOPICS).split(",")
     launch = subprocess.Popen(["roslaunch", "-p", port, "frontalis", "face.launch", "scene:=" + os.path.normpath(path)]
                               + ["%s:=%s" % pair for pair in defaults.items()], stdout=subprocess.DEVNULL)
     try:
-        measure(launch)
+        measure(launch, dict.fromkeys(topics))
     finally:
         if launch.poll() is None:
             launch.send_signal(signal.SIGINT)

@@ -34,7 +34,7 @@ SkinField skin_field_from_name(const std::string& name);  ///< throws Error unle
 struct SolverSettings
 {
   Backend backend = "auto";
-  int threads = 0;       ///< CPU threads; 0: one per core
+  int threads = 0;       ///< CPU threads at most; 0: one per core
   double time_step = 0;  ///< [s]; 0: chosen by the solver. Steps above the critical time step are refused
   bool ledger = false;   ///< keep an account of energies (Solver::ledger); makes steps slower
 };

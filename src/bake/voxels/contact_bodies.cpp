@@ -1,6 +1,7 @@
 #include "bake/voxels/contact_bodies.hpp"
 
 #include "bake/mesh/cluster_search.hpp"
+#include "bake/mesh/remesh.hpp"
 #include "bake/messages.hpp"
 #include "frontalis/model/sample_field.hpp"
 
@@ -21,6 +22,7 @@ constexpr double largest_spacing = 0.5e-3;  // largest distance between samples 
 constexpr double spacing_share = 0.5;       // largest distance between samples, in shortest voxel edges
 constexpr double reach_share = 2;           // reach of the field from a surface, in longest voxel edges
 constexpr double deepest_inside = 20e-3;    // reach of the field into a body, more than the thickness of tissue [m]
+constexpr double shown_tolerance = 150e-6;  // by which skin that is only shown may be off its surface [m]
 constexpr double overlap_share = 0.5;       // largest depth of tissue in a body at rest, in shortest voxel edges
 
 // A closed surface. The distance from it is positive outside.
@@ -297,9 +299,9 @@ void bind_contacts(const Scene& scene, const PreparedSurfaces& surfaces, const L
         TriangleMesh mesh = named_surface(surfaces, name, place).mesh();
         if (name == scene.skin.surface)
         {
-          TriangleMesh rest = part_beyond(mesh, scene.skin.crop);
+          TriangleMesh rest = with_fewer_triangles(part_beyond(mesh, scene.skin.crop), shown_tolerance);
           if (is_bounded(constraint.crop))
-            append(rest, part_below(mesh, scene.skin.crop, constraint.crop));
+            append(rest, with_fewer_triangles(part_below(mesh, scene.skin.crop, constraint.crop), shown_tolerance));
           join_vertices(rest);
           mesh = std::move(rest);
         }

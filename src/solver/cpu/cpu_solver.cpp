@@ -29,6 +29,7 @@ CpuSolver<Real>::CpuSolver(const BackendInput& input, const std::string& remark)
       choice_(choose_cpu_kernel()),
       kernel_(pick(choice_, Real(0))),
       team_(input.settings.threads),
+      team_size_(team_.size()),
       remark_(remark.empty() ? "" : "; " + remark)
 {
   for (const double mass : discretisation_.node_mass)
@@ -42,7 +43,7 @@ CpuSolver<Real>::CpuSolver(const BackendInput& input, const std::string& remark)
     largest = std::max(largest, rows_.plane_nodes[k + 1] - rows_.plane_nodes[k]);
   buffer_stride_ = largest + 2 * Tile::width;
   buffers_.assign(team_.size(), std::vector<Real>(8 * static_cast<std::size_t>(buffer_stride_)));
-  share_planes(rows_.plane_tiles);
+  share_planes();
   fibre_memory_.resize(account_ ? rows_.fibres.size() : 0);
   relaxed_.values.resize(rows_.viscous.size() * physics::relaxed_tensors(discretisation_.viscous_terms) * 6 *
                          Tile::width);
@@ -95,8 +96,9 @@ void CpuSolver<Real>::list_arrays(ArrayList& list)
 
 // Divides the planes into slabs with about equal numbers of tiles.
 template <class Real>
-void CpuSolver<Real>::share_planes(const std::vector<std::int32_t>& plane_tiles)
+void CpuSolver<Real>::share_planes()
 {
+  const std::vector<std::int32_t>& plane_tiles = rows_.plane_tiles;
   const int threads = team_.size();
   const auto total = static_cast<std::int64_t>(plane_tiles.back());
   slab_.assign(1, 0);
@@ -126,8 +128,8 @@ BackendTraits CpuSolver<Real>::traits() const
                               : rounding_[0].empty()            ? "float"
                                                                 : "float, compensated";
   BackendTraits traits;
-  traits.description = fmt::format("cpu ({}, {}, {} thread{}{})", numbers, choice_.name, team_.size(),
-                                   team_.size() == 1 ? "" : "s", remark_);
+  traits.description = fmt::format("cpu ({}, {}, {} thread{}{})", numbers, choice_.name, team_size_.most(),
+                                   team_size_.most() == 1 ? "" : "s", remark_);
   return traits;
 }
 

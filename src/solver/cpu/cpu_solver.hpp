@@ -1,6 +1,7 @@
 #pragma once
 
 #include "solver/cpu/cpu_kernel.hpp"
+#include "solver/cpu/team_size.hpp"
 #include "solver/cpu/thread_team.hpp"
 #include "solver/cpu/voxel_rows.hpp"
 #include "solver/stepping/host_backend.hpp"
@@ -44,7 +45,7 @@ private:
   std::vector<std::int32_t> first_nodes() const override { return rows_.plane_nodes; }
   void find_forces(const NodeShare& share, const Components& u) override;
   const Components& found_forces() const override { return next_; }
-  void share_planes(const std::vector<std::int32_t>& plane_tiles);
+  void share_planes();
   Arguments arguments(double dt, const float* activation);
   Monitor examine(double found);
   void kick(Arguments& g, double seconds) const;
@@ -58,6 +59,7 @@ private:
   CpuKernelChoice choice_;
   CpuKernel<Real> kernel_;
   ThreadTeam team_;
+  TeamSize team_size_;
   std::string remark_;
   std::vector<std::int32_t> slab_;  // thread t owns node planes slab_[t] .. slab_[t + 1]
   std::vector<std::vector<Real>> buffers_;

@@ -4,10 +4,24 @@
 #include "frontalis/physics/time_step.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <ctime>
 
 namespace frontalis
 {
+namespace
+{
+
+// Time for which the calling thread ran on a core [s].
+double thread_time()
+{
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+}  // namespace
 
 template <class Real>
 void CpuSolver<Real>::kick(Arguments& g, double seconds) const
@@ -121,12 +135,20 @@ PlanMeasures CpuSolver<Real>::run(const StepPlan& plan)
   const bool prepared = std::any_of(parts.begin(), parts.end(), [](const auto* part) { return part->prepares(); });
   const bool pushed = std::any_of(parts.begin(), parts.end(), [](const auto* part) { return part->pushes(); });
   const bool grouped = std::any_of(parts.begin(), parts.end(), [](const auto* part) { return part->groups(); });
+  if (team_size_.working() != team_.size())
+  {
+    team_.resize(team_size_.working());
+    share_planes();
+  }
   std::vector<PlanMeasures> seen(team_.size());
+  std::vector<double> ran(team_.size());
+  const auto start = std::chrono::steady_clock::now();
   Arguments first = arguments(plan.dt, nullptr);
   kick(first, plan.first_kick);
   on_all_threads(
       [&](const NodeShare& share)
       {
+        const double started = thread_time();
         Arguments g = first;
         Real* const buffer = buffers_[share.thread].data();
         for (int step = 0; step < plan.steps; ++step)
@@ -185,7 +207,9 @@ PlanMeasures CpuSolver<Real>::run(const StepPlan& plan)
           }
         }
         seen[share.thread].speed = std::sqrt(static_cast<double>(this->fastest_squared(share)));
+        ran[share.thread] = thread_time() - started;
       });
+  team_size_.add(plan.steps, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), ran);
   if (plan.steps % 2 == 1)
     u_.swap(next_);
   PlanMeasures all;

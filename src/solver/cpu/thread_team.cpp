@@ -36,6 +36,7 @@ ThreadTeam::ThreadTeam(int threads)
   {
     for (int t = 1; t < count; ++t)
       workers_.emplace_back([this, t] { work(t); });
+    size_ = count;
   }
   catch (const std::system_error& error)
   {
@@ -55,6 +56,12 @@ void ThreadTeam::stop()
   wake_.notify_all();
   for (auto& worker : workers_)
     worker.join();
+}
+
+void ThreadTeam::resize(int size)
+{
+  const std::lock_guard<std::mutex> lock(mutex_);
+  size_ = std::clamp(size, 1, static_cast<int>(workers_.size()) + 1);
 }
 
 void ThreadTeam::run(const std::function<void(int)>& task)
@@ -99,6 +106,8 @@ void ThreadTeam::work(int thread)
       if (stop_)
         return;
       seen = generation_;
+      if (thread >= size_)
+        continue;
       task = task_;
     }
     (*task)(thread);

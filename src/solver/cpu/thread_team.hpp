@@ -21,10 +21,14 @@ public:
   ThreadTeam(const ThreadTeam&) = delete;
   ThreadTeam& operator=(const ThreadTeam&) = delete;
 
-  int size() const { return static_cast<int>(workers_.size()) + 1; }
-  /// Runs task(thread) on every thread and returns when all are done. The caller is thread 0. The task must not throw.
+  /// The number of threads that work, at first all.
+  int size() const { return size_; }
+  /// Lets the first `size` threads work, and the others sleep. Not to be called inside a task.
+  void resize(int size);
+  /// Runs task(thread) on every working thread and returns when all are done. The caller is thread 0. The task must not
+  /// throw.
   void run(const std::function<void(int)>& task);
-  /// Waits for all threads of the team. Each thread must call barrier() from inside the task.
+  /// Waits for all working threads. Each thread must call barrier() from inside the task.
   void barrier();
 
 private:
@@ -37,6 +41,7 @@ private:
   const std::function<void(int)>* task_ = nullptr;
   std::uint64_t generation_ = 0;
   bool stop_ = false;
+  int size_ = 1;
   std::atomic<int> arrived_{ 0 };
   std::atomic<std::uint64_t> phase_{ 0 };
 };

@@ -1,8 +1,13 @@
-// The panel in rviz itself: it finds the muscles, a slider moves the face, buttons work, and its settings are saved.
+// The plugins in rviz itself. The panel finds the muscles, a slider moves the face, buttons work, and its settings are
+// saved. The display draws the skin.
 
 #include <frontalis/SimulationState.h>
 #include <ros/package.h>
 #include <ros/ros.h>
+#include <OgreRenderWindow.h>
+#include <rviz/display.h>
+#include <rviz/display_group.h>
+#include <rviz/render_panel.h>
 #include <rviz/visualization_frame.h>
 #include <rviz/visualization_manager.h>
 
@@ -19,10 +24,13 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <functional>
 #include <iterator>
+#include <memory>
 #include <string>
+#include <vector>
 
 namespace
 {
@@ -45,20 +53,27 @@ bool run_until(const std::function<bool()>& holds)
 class Panel : public testing::Test
 {
 protected:
+  // rviz can be started only once in a process
+  static void SetUpTestSuite()
+  {
+    frame_ = std::make_unique<rviz::VisualizationFrame>();
+    frame_->setApp(static_cast<QApplication*>(QApplication::instance()));
+    frame_->initialize(QString::fromStdString(ros::package::getPath("frontalis") + "/test/ros/panel/panel.rviz"));
+    frame_->show();
+  }
+  static void TearDownTestSuite() { frame_.reset(); }
+
   Panel()
   {
     state_ = ros::NodeHandle().subscribe<frontalis::SimulationState>(
         "/face/state", 1, [this](const frontalis::SimulationState::ConstPtr& state) { latest_ = *state; });
-    frame_.setApp(static_cast<QApplication*>(QApplication::instance()));
-    frame_.initialize(QString::fromStdString(ros::package::getPath("frontalis") + "/test/ros/panel/panel.rviz"));
-    frame_.show();
   }
 
   template <typename Widget>
   Widget* find(const char* name)
   {
     Widget* found = nullptr;
-    EXPECT_TRUE(run_until([&] { return (found = frame_.findChild<Widget*>(name)) != nullptr; })) << name;
+    EXPECT_TRUE(run_until([&] { return (found = frame_->findChild<Widget*>(name)) != nullptr; })) << name;
     return found;
   }
 
@@ -75,10 +90,25 @@ protected:
     return testing::AssertionFailure() << "activations are not " << left << " and " << right;
   }
 
-  rviz::VisualizationFrame frame_;
+  /// The share of the picture that is not background [-].
+  double drawn()
+  {
+    Ogre::RenderWindow* const window = frame_->getManager()->getRenderPanel()->getRenderWindow();
+    std::vector<std::uint8_t> pixels(3 * std::size_t(window->getWidth()) * window->getHeight());
+    const Ogre::PixelBox box(window->getWidth(), window->getHeight(), 1, Ogre::PF_BYTE_RGB, pixels.data());
+    window->copyContentsToMemory(box, box);
+    std::size_t coloured = 0;  // the background is grey
+    for (std::size_t p = 0; p < pixels.size(); p += 3)
+      coloured += std::abs(pixels[p] - pixels[p + 2]) > 20 ? 1 : 0;
+    return 3.0 * static_cast<double>(coloured) / static_cast<double>(pixels.size());
+  }
+
+  static std::unique_ptr<rviz::VisualizationFrame> frame_;
   ros::Subscriber state_;
   frontalis::SimulationState latest_;
 };
+
+std::unique_ptr<rviz::VisualizationFrame> Panel::frame_;
 
 TEST_F(Panel, MovesTheFaceAndShowsIt)
 {
@@ -123,12 +153,26 @@ TEST_F(Panel, MovesTheFaceAndShowsIt)
   EXPECT_TRUE(reaches(0, 0));
 
   const std::string saved = testing::TempDir() + "frontalis_panel_test.rviz";
-  ASSERT_TRUE(frame_.saveDisplayConfig(QString::fromStdString(saved)));
+  ASSERT_TRUE(frame_->saveDisplayConfig(QString::fromStdString(saved)));
   std::ifstream file(saved);
   const std::string text{ std::istreambuf_iterator<char>(file), {} };
   EXPECT_NE(text.find("Class: frontalis/FacePanel"), std::string::npos);
   EXPECT_NE(text.find("Left Equals Right: false"), std::string::npos);
   std::remove(saved.c_str());
+}
+
+TEST_F(Panel, TheDisplayDrawsTheSkinWhileItIsEnabled)
+{
+  rviz::Display* const face = frame_->getManager()->getRootDisplayGroup()->getDisplayAt(0);
+  ASSERT_EQ(face->getClassId(), "frontalis/Face");
+  EXPECT_TRUE(run_until([&] { return drawn() > 0.02; }));
+  face->setEnabled(false);
+  EXPECT_TRUE(run_until([&] { return drawn() == 0; }));
+  face->setEnabled(true);
+  EXPECT_TRUE(run_until([&] { return drawn() > 0.02; }));
+  // without triangles there is nothing to draw, which the status says
+  face->subProp("Topic")->setValue("/elsewhere/skin_points");
+  EXPECT_TRUE(run_until([&] { return drawn() == 0; }));
 }
 
 }  // namespace

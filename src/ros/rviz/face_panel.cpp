@@ -1,4 +1,4 @@
-#include "ros/panel/face_panel.hpp"
+#include "ros/rviz/face_panel.hpp"
 
 #include <dynamic_reconfigure/Reconfigure.h>
 #include <frontalis/ActionUnits.h>
