@@ -1,5 +1,6 @@
 #include "frontalis/bake/bake.hpp"
 
+#include "bake/check_holes.hpp"
 #include "bake/check_magnitudes.hpp"
 #include "bake/check_sides.hpp"
 #include "bake/fibres/fibres.hpp"
@@ -254,6 +255,7 @@ Model bake(const Scene& given, BakeReport* report, const BakeProgress& progress)
   const Grid grid = make_grid(scene, volumes);  // its message, if it has one, says more
   if (!impossible.empty())
     throw Error(impossible);
+  check_holes(scene, surfaces, volumes, monitor);
   find_surfaces_apart(scene, volumes, monitor);
   find_filled_surfaces(scene, surfaces, volumes, monitor);
 

@@ -164,6 +164,22 @@ TEST_F(Import, SmallPiecesApartAreTold)
       << warnings[0];
 }
 
+TEST_F(Import, SpikesAreTold)
+{
+  TriangleMesh mesh = sphere({ 0, 0, 0 }, 10);
+  EXPECT_TRUE(load(mesh).warnings.empty());
+  // a cone whose tip is no farther from its base than twice the base's width is no fault
+  for (double& coordinate : mesh.vertices[7])
+    coordinate *= 1.6;
+  EXPECT_TRUE(load(mesh).warnings.empty());
+  for (double& coordinate : mesh.vertices[7])
+    coordinate *= 5;
+  const auto warnings = load(mesh).warnings;
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(warnings[0].find("surface 'body' has a spike of "), 0u) << warnings[0];
+  EXPECT_NE(warnings[0].find(" mm: remove it"), std::string::npos) << warnings[0];
+}
+
 TEST_F(Import, AnOpenSurfaceThatIsGivenTwiceKeepsItsBorder)
 {
   TriangleMesh mesh = box({ 5, 5, 5 }, { 10, 10, 10 });

@@ -45,6 +45,52 @@ TEST_F(OpenSurfaces, AHeadOpenAtTheNeckHoldsItsTissue)
   EXPECT_TRUE(reported);
 }
 
+TEST_F(OpenSurfaces, HolesThatAreProbablyFaultsAreWarnedOf)
+{
+  const auto near = [](const Vector3& v, const Vector3& centre, double size)
+  { return std::hypot(v[0] - centre[0], v[1] - centre[1], v[2] - centre[2]) < size; };
+  const auto face = [&](const Vector3& v)
+  {
+    const bool eye = near(v, { 0.86, 0.4, 0.3 }, 0.15) || near(v, { 0.86, -0.4, 0.3 }, 0.15);
+    return eye || near(v, { 0.87, 0, -0.5 }, 0.2) || v[2] < -0.9;
+  };
+  const auto warnings = [](const Scene& scene)
+  {
+    BakeReport report;
+    bake(scene, &report);
+    std::vector<std::string> out;
+    for (const std::string& warning : report.warnings)
+      if (warning.find("has a hole") != std::string::npos)
+        out.push_back(warning);
+    return out;
+  };
+  Scene scene = plain_scene(6e-3);
+  scene.frame.forward = { { 1, 0, 0 } };
+  scene.frame.up = { { 0, 0, 1 } };
+  scene.surfaces = { sphere_file("skin", 60e-3, face),
+                     sphere_file("bone", 40e-3, [](const Vector3&) { return false; }) };
+  scene.volumes = { volume_inside("tissue", { "skin" }, "fat", true) };
+  scene.volumes[0].outside = { "bone" };
+  scene.skin.surface = "skin";
+  EXPECT_TRUE(warnings(scene).empty()) << "eyes, mouth and neck are open in many data";
+
+  scene.surfaces = { sphere_file("skin", 60e-3,
+                                 [&](const Vector3& v) {
+                                   return face(v) || near(v, { 0.68, 0.3, 0.67 }, 0.15);
+                                 }),
+                     sphere_file("bone", 40e-3,
+                                 [&](const Vector3& v) {
+                                   return near(v, { 0.8, 0, 0.6 }, 0.25);
+                                 }) };
+  const auto told = warnings(scene);
+  ASSERT_EQ(told.size(), 2u);
+  EXPECT_EQ(told[0].find("surface 'bone' has a hole "), 0u) << told[0];
+  EXPECT_NE(told[0].find(", through which tissue enters it: close it"), std::string::npos) << told[0];
+  EXPECT_EQ(told[1].find("surface 'skin' has a hole "), 0u) << told[1];
+  EXPECT_NE(told[1].find(", on one side of the face alone; close it, if skin is missing there"), std::string::npos)
+      << told[1];
+}
+
 TEST_F(OpenSurfaces, GapsBetweenTwoBonesLetNothingThrough)
 {
   Scene scene = plain_scene(1e-3);

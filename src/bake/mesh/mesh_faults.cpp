@@ -26,6 +26,8 @@ using HalfEdgeMesh = CGAL::Surface_mesh<Kernel::Point_3>;
 using Face = HalfEdgeMesh::Face_index;
 
 constexpr double sliver_height = 0.02;  // largest height of a sliver divided by its longest edge
+constexpr double least_spike = 2e-3;    // [m]
+constexpr double spike_slope = 3;       // height of a spike divided by the longest edge around it; bones have up to 2
 
 Vector3d vector_of(const Kernel::Point_3& p) { return { p.x(), p.y(), p.z() }; }
 
@@ -97,6 +99,36 @@ void find_thin_triangles(const HalfEdgeMesh& mesh, MeshFaults& faults)
       add(faults.flat, middle);
     else if (height < sliver_height * longest)
       add(faults.slivers, middle);
+  }
+}
+
+// A spike is a vertex that is farther from the mean of its neighbours than these are apart.
+void find_spikes(const HalfEdgeMesh& mesh, MeshFaults& faults)
+{
+  for (const auto v : mesh.vertices())
+  {
+    if (mesh.is_border(v))
+      continue;
+    Vector3d mean{ 0, 0, 0 };
+    double around = 0;
+    int count = 0;
+    for (const auto edge : CGAL::halfedges_around_target(mesh.halfedge(v), mesh))
+    {
+      const Vector3d a = vector_of(mesh.point(mesh.source(edge)));
+      mean += a;
+      ++count;
+      around = std::max(around, (vector_of(mesh.point(mesh.target(mesh.next(edge)))) - a).norm());
+    }
+    const Vector3d tip = vector_of(mesh.point(v));
+    const double height = (tip - mean / std::max(1, count)).norm();
+    if (height < least_spike || height < spike_slope * around)
+      continue;
+    ++faults.spikes.count;
+    if (height > faults.spike_height)
+    {
+      faults.spike_height = height;
+      faults.spikes.place = tip;
+    }
   }
 }
 
@@ -227,6 +259,7 @@ MeshFaults find_mesh_faults(const TriangleMesh& mesh)
   HalfEdgeMesh half_edges = half_edge_mesh(mesh, shared);
   find_edge_faults(mesh, shared, faults);
   find_thin_triangles(half_edges, faults);
+  find_spikes(half_edges, faults);
   find_pieces(half_edges, faults);
   find_crossings(half_edges, faults);
   // Touching bodies were separated at their common edges. These edges are borders now, but not holes.

@@ -23,7 +23,9 @@ struct MeshFaults
   Kind touching;   ///< edges of four or more triangles, whose directions balance: bodies that touch
   Kind flat;       ///< triangles without area
   Kind slivers;    ///< triangles with a height below a fiftieth of their longest edge
+  Kind spikes;     ///< vertices that stand out of their neighbours; the place is that of the highest
   Kind crossings;  ///< pairs of triangles that cross
+  double spike_height = 0;           ///< of the highest spike [m]
   double crossing_extent = 0;        ///< box diagonal of the widest connected group of crossing triangles [m]
   std::vector<Hole> holes;           ///< longest first
   std::vector<std::int32_t> piece;   ///< for each triangle the index of its edge-connected component
