@@ -53,11 +53,13 @@ void MuscleLines::fill(const Model& model, const std::vector<std::array<double, 
     marker.color.a = 1;
     marker.points.clear();
     for (const Line& line : lines_[muscle])
+    {
+      const auto place = rest_place(model, model.voxels[line.voxel]);
       for (const auto& end : line.ends)
       {
         std::array<double, 3> at{};
         for (std::size_t axis = 0; axis < 3; ++axis)
-          at[axis] = (model.voxels[line.voxel][axis] + end[axis]) * model.spacing[axis];
+          at[axis] = (place[axis] + end[axis]) * model.spacing[axis];
         for (std::size_t corner = 0; corner < 8; ++corner)
         {
           double share = 1;
@@ -73,6 +75,7 @@ void MuscleLines::fill(const Model& model, const std::vector<std::array<double, 
         to.y = point[1];
         to.z = point[2];
       }
+    }
   }
 }
 

@@ -270,6 +270,12 @@ TEST(Conversions, MuscleLinesMoveWithTheTissue)
   ASSERT_EQ(out.markers[1].points.size(), 2u);
   EXPECT_NEAR(out.markers[1].points[0].z, 0.001, 1e-12);
   EXPECT_NEAR(out.markers[1].points[1].z, 0.011, 1e-12);
+  // a voxel of a flap rests lower than its index says
+  model.voxels[0][2] = 5;
+  model.flaps = { { 4, 5 } };
+  lines.fill(model, std::vector<std::array<double, 3>>(8, { { 0, 0, 0.001 } }), { 0, 1 }, out);
+  ASSERT_EQ(out.markers[1].points.size(), 2u);
+  EXPECT_NEAR(out.markers[1].points[0].z, 0.001, 1e-12);
   // full activation is red, and zero activation is blue
   EXPECT_GT(out.markers[1].color.r, out.markers[1].color.b);
   EXPECT_GT(out.markers[0].color.b, out.markers[0].color.r);
