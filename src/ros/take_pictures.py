@@ -150,9 +150,9 @@ class Face:
         if self.poses():
             self.strike(name)
         else:
-            self.command("relax", lambda target: not any(target))
+            self.command("relax")
             if name != "relax":
-                self.command(name, any)
+                self.command(name)
         for seconds in (RAMP, HOLD):
             answer = self.advance(seconds)
             if not answer.success:
@@ -169,10 +169,11 @@ class Face:
                 return
         fail("the joints did not reach the pose '%s'" % name)
 
-    def command(self, name, arrived):
+    def command(self, name):
+        before = self.muscles().messages
         for _ in range(100):
             self.expression.publish(name=[name])
-            if arrived(self.muscles().target):
+            if self.muscles().messages > before:
                 return
             time.sleep(0.1)
         fail("expression '%s' did not reach the face" % name)
