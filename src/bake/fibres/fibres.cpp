@@ -121,7 +121,7 @@ MuscleFibres fit_muscle(const SceneMuscle& muscle, const TriangleMesh& mesh, con
   finding = fmt::format(
       "muscle '{}': {} {:.1f} mm long, {:.1f} mm across; NURBS volume {:.4g} cm3 beside {:.4g} cm3 of its surface, of "
       "which it encloses {:.0f} %; rms distance {:.2f} mm",
-      muscle.name, guide.ring ? "fibres in rings, on average" : "fibres on average", 1e3 * coordinates.length,
+      muscle.name, guide.ring ? "fibres in rings, on average" : "fibres on average", 1e3 * volume.fibre_length(),
       1e3 * coordinates.width, 1e6 * fit.volume, 1e6 * signed_volume(mesh), 100 * fit.enclosed, 1e3 * fit.distance);
   if (fit.distance > largest_misfit * coordinates.width)
     throw failure(

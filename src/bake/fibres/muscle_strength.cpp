@@ -2,31 +2,6 @@
 
 namespace frontalis
 {
-namespace
-{
-
-/// Mean length of the fibres of a NURBS volume [m], from 3 x 3 fibres of 32 chords each.
-double mean_length(const NurbsVolume& volume)
-{
-  constexpr int chords = 32;
-  double sum = 0;
-  for (int fibre = 0; fibre < 9; ++fibre)
-  {
-    const int column = fibre % 3, row = fibre / 3;
-    const double v = (0.5 + column) / 3, w = (0.5 + row) / 3;
-    Vector3d before = volume.at({ 0, v, w }).position;
-    for (int c = 1; c <= chords; ++c)
-    {
-      const Vector3d here = volume.at({ static_cast<double>(c) / chords, v, w }).position;
-      sum += (here - before).norm();
-      before = here;
-    }
-  }
-  return sum / 9;
-}
-
-}  // namespace
-
 void scale_strength(const Scene& scene, const std::vector<MuscleFibres>& fibres, const LocalFrame& frame, Model& model,
                     BakeReport* report)
 {
@@ -53,7 +28,7 @@ void scale_strength(const Scene& scene, const std::vector<MuscleFibres>& fibres,
     Muscle& muscle = model.muscles[m];
     BakeReport::MuscleForce force;
     force.name = muscle.name;
-    force.length = fibres[m].volume ? mean_length(*fibres[m].volume) : extents[m].last - extents[m].first + edge;
+    force.length = fibres[m].volume ? fibres[m].volume->fibre_length() : extents[m].last - extents[m].first + edge;
     force.cross_section = extents[m].volume / force.length;
     force.given = scene.muscles[m].cross_section;
     if (force.given > 0 && force.cross_section > 0)

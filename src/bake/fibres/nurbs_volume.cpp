@@ -174,4 +174,19 @@ Vector3d NurbsVolume::closest(const Vector3d& p) const
 
 Vector3d NurbsVolume::fibre(const Vector3d& p) const { return (at(closest(p)).derivative[0]).normalized(); }
 
+double NurbsVolume::fibre_length() const
+{
+  constexpr int side = 3, chords = 32;
+  double sum = 0;
+  for (int fibre = 0; fibre < side * side; ++fibre)
+  {
+    const int column = fibre % side, row = fibre / side;
+    const double v = (0.5 + column) / side, w = (0.5 + row) / side;
+    const auto point = [&](int chord) { return at({ static_cast<double>(chord) / chords, v, w }).position; };
+    for (int c = 0; c < chords; ++c)
+      sum += (point(c + 1) - point(c)).norm();
+  }
+  return sum / (side * side);
+}
+
 }  // namespace frontalis

@@ -56,6 +56,8 @@ public:
   Vector3d closest(const Vector3d& p) const;
   /// Unit tangent of the fibre through the closest point to p.
   Vector3d fibre(const Vector3d& p) const;
+  /// Mean length of the fibres [m], from 3 x 3 fibres of 32 chords each.
+  double fibre_length() const;
 
 private:
   std::array<SplineAxis, 3> axes_;
