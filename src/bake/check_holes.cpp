@@ -1,5 +1,6 @@
 #include "bake/check_holes.hpp"
 
+#include "bake/check_sides.hpp"
 #include "bake/mesh/mesh_faults.hpp"
 #include "bake/messages.hpp"
 
@@ -17,31 +18,31 @@ using Holes = std::vector<MeshFaults::Hole>;
 constexpr double smallest = 20e-3;       // length of the border of a hole that matters [m]
 constexpr double off_the_middle = 8e-3;  // [m] from the middle of the face, from which a hole is on one side
 constexpr double lengths_differ = 1.6;   // ratio of the lengths of a hole and its counterpart
-constexpr double beside = 0.95;          // least cosine between their connection and the direction to the left
+constexpr double places_differ = 15e-3;  // [m] between a hole and the mirror image of its counterpart
 
-/// The holes of a surface from a file that lie in the tissue, largest first.
-Holes holes_in_tissue(const Scene& scene, const PreparedSurface& surface, const Box& tissue)
+/// The holes of a surface from a file, largest first; of a surface that is made, none.
+Holes holes_of_file(const Scene& scene, const PreparedSurface& surface)
 {
   const auto is_file = [&](const Surface& given) { return given.name == surface.name() && !given.file.empty(); };
   if (surface.closed() || std::none_of(scene.surfaces.begin(), scene.surfaces.end(), is_file))
     return {};
   Holes holes = find_holes(surface.mesh());
-  const auto is_harmless = [&](const MeshFaults::Hole& hole)
-  { return hole.length < smallest || !tissue.contains(hole.centre); };
-  holes.erase(std::remove_if(holes.begin(), holes.end(), is_harmless), holes.end());
+  holes.erase(std::remove_if(holes.begin(), holes.end(), [](const auto& hole) { return hole.length < smallest; }),
+              holes.end());
   return holes;
 }
 
-bool has_counterpart(const MeshFaults::Hole& hole, const Holes& holes, const Vector3d& left)
+/// Whether a hole is on one side of the face, and none like it is on the other side.
+bool is_one_sided(const MeshFaults::Hole& hole, const Holes& holes, const MiddlePlane& middle)
 {
-  return std::any_of(holes.begin(), holes.end(),
-                     [&](const MeshFaults::Hole& other)
-                     {
-                       const Vector3d apart = hole.centre - other.centre;
-                       return std::abs(left.dot(apart)) > beside * apart.norm() &&
-                              std::max(hole.length, other.length) <
-                                  lengths_differ * std::min(hole.length, other.length);
-                     });
+  const double aside = middle.left.dot(hole.centre) - middle.offset;
+  const Vector3d mirrored = hole.centre - 2 * aside * middle.left;
+  const auto is_counterpart = [&](const MeshFaults::Hole& other)
+  {
+    return (mirrored - other.centre).norm() < places_differ &&
+           std::max(hole.length, other.length) < lengths_differ * std::min(hole.length, other.length);
+  };
+  return std::abs(aside) > off_the_middle && std::none_of(holes.begin(), holes.end(), is_counterpart);
 }
 
 }  // namespace
@@ -49,6 +50,7 @@ bool has_counterpart(const MeshFaults::Hole& hole, const Holes& holes, const Vec
 void check_holes(const Scene& scene, const PreparedSurfaces& surfaces, const Volumes& volumes, BakeMonitor& monitor)
 {
   const Box tissue = volumes.tissue_box();
+  const auto in_tissue = [&](const MeshFaults::Hole& hole) { return tissue.contains(hole.centre); };
   const auto text = [&](const MeshFaults::Hole& hole)
   { return length_text(hole.length, scene.unit) + " around at " + place_text(hole.centre, scene.unit); };
   std::set<std::string> told;
@@ -58,19 +60,19 @@ void check_holes(const Scene& scene, const PreparedSurfaces& surfaces, const Vol
       const PreparedSurface& body = volumes.body(b);
       if (!entry.volume->tissue || !told.insert(body.name()).second)
         continue;
-      if (const Holes holes = holes_in_tissue(scene, body, tissue); !holes.empty())
-        monitor.warn("surface '{}' has a hole {}, through which tissue enters it: close it", body.name(),
-                     text(holes.front()));
+      const Holes holes = holes_of_file(scene, body);
+      if (const auto hole = std::find_if(holes.begin(), holes.end(), in_tissue); hole != holes.end())
+        monitor.warn("surface '{}' has a hole {}; tissue takes the place of what is missing there: close it",
+                     body.name(), text(*hole));
     }
+  const std::optional<MiddlePlane> middle = middle_plane(surfaces);
   for (const auto& surface : surfaces)
   {
-    if (surface->name() != scene.skin.surface)
+    if (surface->name() != scene.skin.surface || !middle)
       continue;
-    const Vector3d left = to_vector(scene.frame.up).cross(to_vector(scene.frame.forward)).normalized();
-    const Holes holes = holes_in_tissue(scene, *surface, tissue);
+    const Holes holes = holes_of_file(scene, *surface);
     for (const MeshFaults::Hole& hole : holes)
-      if (std::abs(left.dot(hole.centre - to_vector(scene.frame.origin))) > off_the_middle &&
-          !has_counterpart(hole, holes, left))
+      if (in_tissue(hole) && is_one_sided(hole, holes, *middle))
         monitor.warn("surface '{}' has a hole {}, on one side of the face alone; close it, if skin is missing there",
                      surface->name(), text(hole));
   }

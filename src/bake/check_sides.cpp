@@ -100,6 +100,21 @@ void find_equal_surfaces(const Scene& scene, const PreparedSurfaces& surfaces, B
 
 }  // namespace
 
+std::optional<MiddlePlane> middle_plane(const PreparedSurfaces& surfaces)
+{
+  std::map<std::string, Thing> things;
+  for (const auto& surface : surfaces)
+    things[surface->name()] = { {}, surface->box() };
+  Vector3d left = Vector3d::Zero();
+  for (const auto& [name, thing] : things)
+    if (const auto other = counterpart(things, name); other != things.end())
+      left += (thing.box.center() - other->second.box.center()).normalized();
+  if (left.isZero())
+    return std::nullopt;
+  left.normalize();
+  return MiddlePlane{ left, middle_of_pairs(things, left) };
+}
+
 void check_sides(const Scene& scene, const PreparedSurfaces& surfaces, BakeMonitor& monitor)
 {
   std::map<std::string, Thing> things;

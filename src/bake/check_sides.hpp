@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <string>
 
 namespace frontalis
@@ -17,6 +18,16 @@ auto counterpart(const std::map<std::string, Thing>& things, const std::string& 
   const std::size_t end = name.size() - std::min(name.size(), left.size());
   return name.substr(end) == left ? things.find(name.substr(0, end) + "_right") : things.end();
 }
+
+/// The plane between the left and the right half of the face: points p with left.dot(p) == offset.
+struct MiddlePlane
+{
+  Vector3d left;      ///< unit normal
+  double offset = 0;  ///< [m]
+};
+
+/// The middle plane of the pairs of surfaces NAME_left and NAME_right; nothing without pairs.
+std::optional<MiddlePlane> middle_plane(const PreparedSurfaces& surfaces);
 
 /// Throws Error if a surface or landmark called NAME_left lies to the right of NAME_right in the face frame. A face
 /// that is mirrored, by its files or by its frame, would otherwise be baked without a word. Warns if left and right do

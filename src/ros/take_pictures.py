@@ -170,10 +170,12 @@ class Face:
         fail("the joints did not reach the pose '%s'" % name)
 
     def command(self, name):
-        before = self.muscles().messages
+        before = None
         for _ in range(100):
-            self.expression.publish(name=[name])
-            if self.muscles().messages > before:
+            if before is None and self.expression.get_num_connections() > 0:
+                before = self.muscles().messages
+                self.expression.publish(name=[name])
+            if before is not None and self.muscles().messages > before:
                 return
             time.sleep(0.1)
         fail("expression '%s' did not reach the face" % name)

@@ -64,28 +64,27 @@ TEST_F(OpenSurfaces, HolesThatAreProbablyFaultsAreWarnedOf)
         out.push_back(warning);
     return out;
   };
+  const auto whole = [](const Vector3&) { return false; };
+  const auto at_the_temple = [&](const Vector3& v) { return near(v, { 0.43, 0.85, 0.3 }, 0.15); };
   Scene scene = plain_scene(6e-3);
-  scene.frame.forward = { { 1, 0, 0 } };
-  scene.frame.up = { { 0, 0, 1 } };
-  scene.surfaces = { sphere_file("skin", 60e-3, face),
-                     sphere_file("bone", 40e-3, [](const Vector3&) { return false; }) };
+  scene.surfaces = { sphere_file("skin", 60e-3, face), sphere_file("bone", 40e-3, whole),
+                     sphere_surface("cheek_left", { 0, 30e-3, 0 }, 5e-3, 2e-3),
+                     sphere_surface("cheek_right", { 0, -30e-3, 0 }, 5e-3, 2e-3) };
   scene.volumes = { volume_inside("tissue", { "skin" }, "fat", true) };
   scene.volumes[0].outside = { "bone" };
   scene.skin.surface = "skin";
   EXPECT_TRUE(warnings(scene).empty()) << "eyes, mouth and neck are open in many data";
+  scene.volumes[0].crop.lower = scene.skin.crop.lower = { { -1, 10e-3, -1 } };
+  EXPECT_TRUE(warnings(scene).empty()) << "the counterpart of an eye may lie outside of the tissue";
+  scene.volumes[0].crop = scene.skin.crop = {};
 
-  scene.surfaces = { sphere_file("skin", 60e-3,
-                                 [&](const Vector3& v) {
-                                   return face(v) || near(v, { 0.68, 0.3, 0.67 }, 0.15);
-                                 }),
-                     sphere_file("bone", 40e-3,
-                                 [&](const Vector3& v) {
-                                   return near(v, { 0.8, 0, 0.6 }, 0.25);
-                                 }) };
+  // This hole is as large as that of the eye beside it.
+  scene.surfaces[0] = sphere_file("skin", 60e-3, [&](const Vector3& v) { return face(v) || at_the_temple(v); });
+  scene.surfaces[1] = sphere_file("bone", 40e-3, [&](const Vector3& v) { return near(v, { 0.8, 0, 0.6 }, 0.25); });
   const auto told = warnings(scene);
   ASSERT_EQ(told.size(), 2u);
   EXPECT_EQ(told[0].find("surface 'bone' has a hole "), 0u) << told[0];
-  EXPECT_NE(told[0].find(", through which tissue enters it: close it"), std::string::npos) << told[0];
+  EXPECT_NE(told[0].find("; tissue takes the place of what is missing there: close it"), std::string::npos) << told[0];
   EXPECT_EQ(told[1].find("surface 'skin' has a hole "), 0u) << told[1];
   EXPECT_NE(told[1].find(", on one side of the face alone; close it, if skin is missing there"), std::string::npos)
       << told[1];

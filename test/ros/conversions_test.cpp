@@ -1,9 +1,11 @@
+#include "frontalis/error.hpp"
 #include "frontalis/render/face_appearance.hpp"
 #include "frontalis/ros/conversions.hpp"
 #include "frontalis/ros/muscle_lines.hpp"
 #include "frontalis/ros/skin_muscles.hpp"
 #include "frontalis/solver/rigid_motion.hpp"
 
+#include "ros/coloured_triangles.hpp"
 #include "ros/marker_meshes.hpp"
 #include "ros/small_model.hpp"
 
@@ -252,6 +254,32 @@ TEST(Conversions, StandardLandmarksAreInTheirOrderAndComplete)
   EXPECT_EQ(model.landmarks[found[67]], "ibug_68");
   model.landmarks[found[30]] = "nose";
   EXPECT_TRUE(standard_landmarks(model).empty());
+}
+
+TEST(Conversions, TrianglesOfTheDisplayAreThoseOfTheCloudAndTheTopology)
+{
+  const Model model = small_model();
+  const SkinColours colours{ { { 1, 0, 0 } }, { { 0, 1, 0 } }, { { 0, 0, 1 } }, { { 1, 1, 1 } } };
+  sensor_msgs::PointCloud2 cloud;
+  to_point_cloud(lifted(model, 0.002F), { 0, 0, 0, 0 }, colours, cloud);
+  const ColouredTriangles skin = skin_of(cloud, to_mesh(model));
+  ASSERT_EQ(skin.vertices.size(), 4u);
+  EXPECT_NEAR(skin.vertices[1].position[1], 0.01, 1e-6);
+  EXPECT_NEAR(skin.vertices[1].position[2], 0.012, 1e-6);
+  EXPECT_EQ(skin.vertices[1].colour, (std::array<std::uint8_t, 4>{ { 0, 255, 0, 255 } }));
+  EXPECT_EQ(skin.corners, (std::vector<std::uint32_t>{ 0, 1, 2, 0, 2, 3 }));
+
+  shape_msgs::Mesh other = to_mesh(model);
+  other.triangles[1].vertex_indices[0] = 4;
+  EXPECT_THROW(skin_of(cloud, other), Error);
+  sensor_msgs::PointCloud2 bad = cloud;
+  bad.data.resize(bad.data.size() - 1);
+  EXPECT_THROW(vertices_of(bad), Error);
+  bad = cloud;
+  bad.fields.back().name = "grey";
+  EXPECT_THROW(vertices_of(bad), Error);
+  to_point_cloud(lifted(model, std::numeric_limits<float>::quiet_NaN()), { 0, 0, 0, 0 }, colours, bad);
+  EXPECT_THROW(vertices_of(bad), Error);
 }
 
 TEST(Conversions, MuscleLinesMoveWithTheTissue)

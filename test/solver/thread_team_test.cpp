@@ -51,6 +51,25 @@ TEST(ThreadTeam, as_many_threads_work_as_it_is_told)
   EXPECT_EQ(team.size(), 4);
 }
 
+// Threads that have not worked in the former task may wake while the next one begins.
+TEST(ThreadTeam, sizes_may_change_between_all_tasks)
+{
+  ThreadTeam team(4);
+  for (int task = 0; task < 3000; ++task)
+  {
+    team.resize(1 + task * 7 % 4);
+    std::atomic<int> sum{ 0 };
+    team.run(
+        [&](int)
+        {
+          sum += 1;
+          team.barrier();
+          sum += 1;
+        });
+    ASSERT_EQ(sum, 2 * team.size()) << task;
+  }
+}
+
 /// A machine whose cores other programs may use. Times are made up.
 struct Machine
 {
@@ -103,6 +122,16 @@ TEST(TeamSize, threads_that_help_although_they_are_held_go_on)
   TeamSize team(8);
   EXPECT_LT(helpful.work(team, 60), 0.03);
   EXPECT_EQ(team.working(), 8);
+}
+
+TEST(TeamSize, a_limit_of_processor_time_is_found)
+{
+  // threads that may use half of the eight cores, as in a container
+  const Machine limited{ [](int threads) { return threads <= 4 ? 1000.0 * threads : 2000.0; },
+                         [](int threads) { return threads <= 4 ? 0 : threads; } };
+  TeamSize team(8);
+  EXPECT_LT(limited.work(team, 60), 0.03);
+  EXPECT_EQ(team.working(), 4);
 }
 
 TEST(TeamSize, one_thread_remains_if_all_are_held)

@@ -255,12 +255,10 @@ LoadedSurface load_surface(const Surface& surface, double unit)
   if (const std::string strays = stray_pieces(mesh, faults.piece, unit); !strays.empty())
     loaded.warnings.push_back(fmt::format("surface '{}' {}", surface.name, strays));
   if (faults.spikes.count > 0)
-    loaded.warnings.push_back(fmt::format(
-        "surface '{}' has {} at {}: remove it", surface.name,
-        faults.spikes.count == 1
-            ? "a spike of " + length_text(faults.spike_height, unit)
-            : fmt::format("{} spikes, the highest of {}", faults.spikes.count, length_text(faults.spike_height, unit)),
-        place_text(faults.spikes.place, unit)));
+    loaded.warnings.push_back(fmt::format("surface '{}' has {}, the highest by {} at {}: remove such vertices",
+                                          surface.name, count_text(faults.spikes.count, "spike", "spikes"),
+                                          length_text(faults.spike_height, unit),
+                                          place_text(faults.spikes.place, unit)));
   const bool closed = unbalanced_edges(mesh).empty();
   if (closed)
   {

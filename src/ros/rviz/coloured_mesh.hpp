@@ -1,6 +1,6 @@
 #pragma once
 
-#include "ros/rviz/coloured_triangles.hpp"
+#include "ros/coloured_triangles.hpp"
 
 #include <OgreHardwareVertexBuffer.h>
 #include <OgreSceneNode.h>
@@ -26,7 +26,7 @@ public:
   void set_vertices(const std::vector<ColouredVertex>& vertices);
   void place(const Ogre::Vector3& position, const Ogre::Quaternion& orientation);
 
-  Ogre::Real getBoundingRadius() const override { return mBox.getSize().length(); }
+  Ogre::Real getBoundingRadius() const override { return Ogre::Math::boundingRadiusFromAABB(mBox); }
   Ogre::Real getSquaredViewDepth(const Ogre::Camera* camera) const override;
 
 private:

@@ -9,24 +9,6 @@
 namespace frontalis
 {
 
-namespace
-{
-
-ColouredTriangles skin_of(const sensor_msgs::PointCloud2& cloud, const shape_msgs::Mesh& topology)
-{
-  ColouredTriangles out{ vertices_of(cloud), {} };
-  for (const auto& triangle : topology.triangles)
-    for (const std::uint32_t vertex : triangle.vertex_indices)
-    {
-      if (vertex >= out.vertices.size())
-        throw Error("a triangle of skin_topology has a vertex that does not exist");
-      out.corners.push_back(vertex);
-    }
-  return out;
-}
-
-}  // namespace
-
 FaceDisplay::FaceDisplay()
 {
   topic_property_->setDescription(
@@ -38,9 +20,10 @@ FaceDisplay::~FaceDisplay() = default;
 
 void FaceDisplay::reset()
 {
-  MFDClass::reset();
+  MFDClass::reset();  // forgets all that was said in the status
   cloud_.reset();
-  skin_.reset();
+  bodies_drawn_ = -1;
+  hide_skin(rviz::StatusProperty::Warn, "no vertices have come");
 }
 
 void FaceDisplay::subscribe()
@@ -50,15 +33,22 @@ void FaceDisplay::subscribe()
   if (!isEnabled() || topic.empty())
     return;
   const std::string face = topic.substr(0, topic.find_last_of('/') + 1);
-  topology_subscriber_ = update_nh_.subscribe<shape_msgs::Mesh>(face + "skin_topology", 1,
-                                                                [this](const shape_msgs::Mesh::ConstPtr& topology)
-                                                                {
-                                                                  topology_ = topology;
-                                                                  skin_.reset();
-                                                                  draw_skin();
-                                                                });
-  bodies_subscriber_ = update_nh_.subscribe<visualization_msgs::MarkerArray>(
-      face + "bodies", 1, [this](const visualization_msgs::MarkerArray::ConstPtr& bodies) { take_bodies(bodies); });
+  try
+  {
+    topology_subscriber_ = update_nh_.subscribe<shape_msgs::Mesh>(face + "skin_topology", 1,
+                                                                  [this](const shape_msgs::Mesh::ConstPtr& topology)
+                                                                  {
+                                                                    topology_ = topology;
+                                                                    skin_.reset();
+                                                                    draw_skin();
+                                                                  });
+    bodies_subscriber_ = update_nh_.subscribe<visualization_msgs::MarkerArray>(
+        face + "bodies", 1, [this](const visualization_msgs::MarkerArray::ConstPtr& bodies) { take_bodies(bodies); });
+  }
+  catch (const ros::Exception& error)
+  {
+    setStatus(rviz::StatusProperty::Error, "Topic", QString("Error subscribing: ") + error.what());
+  }
 }
 
 void FaceDisplay::unsubscribe()
@@ -77,24 +67,26 @@ void FaceDisplay::processMessage(const sensor_msgs::PointCloud2::ConstPtr& cloud
   draw_skin();
 }
 
+void FaceDisplay::hide_skin(rviz::StatusProperty::Level level, const QString& why)
+{
+  skin_.reset();
+  if (isEnabled())
+    setStatus(level, "Skin", why);
+}
+
 void FaceDisplay::draw_skin()
 {
-  const auto hide = [this](rviz::StatusProperty::Level level, const QString& why)
-  {
-    skin_.reset();
-    setStatus(level, "Skin", why);
-  };
   if (!cloud_)
     return;
   if (!topology_)
-    return hide(rviz::StatusProperty::Warn, "no triangles have come on skin_topology");
+    return hide_skin(rviz::StatusProperty::Warn, "no triangles have come on skin_topology");
   const std::size_t count = std::size_t(cloud_->width) * cloud_->height;
   if (count != topology_->vertices.size() || topology_->triangles.empty())
-    return hide(rviz::StatusProperty::Warn, "skin_topology has the triangles of another skin");
+    return hide_skin(rviz::StatusProperty::Warn, "skin_topology has the triangles of another skin");
   Ogre::Vector3 position;
   Ogre::Quaternion orientation;
   if (!context_->getFrameManager()->getTransform(cloud_->header, position, orientation))
-    return;
+    return hide_skin(rviz::StatusProperty::Warn, "there is no transform from its frame to the fixed frame");
   try
   {
     if (skin_)
@@ -104,7 +96,7 @@ void FaceDisplay::draw_skin()
   }
   catch (const Error& error)
   {
-    return hide(rviz::StatusProperty::Error, error.what());
+    return hide_skin(rviz::StatusProperty::Error, error.what());
   }
   skin_->place(position, orientation);
   setStatus(rviz::StatusProperty::Ok, "Skin", QString("%1 triangles").arg(topology_->triangles.size()));
@@ -118,20 +110,25 @@ void FaceDisplay::take_bodies(const visualization_msgs::MarkerArray::ConstPtr& b
     return;
   bodies_ = bodies;
   bodies_in_frame_.clear();
+  bodies_drawn_ = -1;
   for (const visualization_msgs::Marker& marker : bodies->markers)
   {
-    if (marker.action != visualization_msgs::Marker::ADD || marker.type != visualization_msgs::Marker::TRIANGLE_LIST ||
-        marker.points.size() < 3)
+    if (marker.action != visualization_msgs::Marker::ADD || marker.type != visualization_msgs::Marker::TRIANGLE_LIST)
       continue;
-    auto drawn = std::make_unique<ColouredMesh>(body_of(marker), *scene_node_);
-    drawn->setVisible(false);
-    bodies_in_frame_.emplace(marker.header.frame_id, std::move(drawn));
+    try
+    {
+      bodies_in_frame_.emplace(marker.header.frame_id, std::make_unique<ColouredMesh>(body_of(marker), *scene_node_));
+    }
+    catch (const Error& error)
+    {
+      setStatus(rviz::StatusProperty::Error, QString::fromStdString(marker.ns), error.what());
+    }
   }
-  setStatus(rviz::StatusProperty::Ok, "Bodies", QString::number(bodies_in_frame_.size()));
 }
 
 void FaceDisplay::update(float /*wall_seconds*/, float /*ros_seconds*/)
 {
+  int drawn = 0;
   for (const auto& [frame, body] : bodies_in_frame_)
   {
     Ogre::Vector3 position;
@@ -140,7 +137,14 @@ void FaceDisplay::update(float /*wall_seconds*/, float /*ros_seconds*/)
     if (is_known)
       body->place(position, orientation);
     body->setVisible(is_known);
+    drawn += is_known ? 1 : 0;
   }
+  if (drawn == bodies_drawn_)
+    return;
+  bodies_drawn_ = drawn;
+  const auto all = static_cast<int>(bodies_in_frame_.size());
+  setStatus(drawn == all ? rviz::StatusProperty::Ok : rviz::StatusProperty::Warn, "Bodies",
+            drawn == all ? QString::number(all) : QString("%1 of %2 have a transform").arg(drawn).arg(all));
 }
 
 }  // namespace frontalis

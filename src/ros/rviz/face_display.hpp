@@ -35,7 +35,9 @@ protected:
 
 private:
   void processMessage(const sensor_msgs::PointCloud2::ConstPtr& cloud) override;
-  /// Draws the latest skin. The status `Skin` says what is missing or wrong; the skin is then hidden.
+  /// Hides the skin; the status `Skin` says why.
+  void hide_skin(rviz::StatusProperty::Level level, const QString& why);
+  /// Draws the latest skin, or hides it if something is missing or wrong.
   void draw_skin();
   void take_bodies(const visualization_msgs::MarkerArray::ConstPtr& bodies);
 
@@ -45,6 +47,7 @@ private:
   visualization_msgs::MarkerArray::ConstPtr bodies_;
   std::unique_ptr<ColouredMesh> skin_;                                         ///< null while it is hidden
   std::multimap<std::string, std::unique_ptr<ColouredMesh>> bodies_in_frame_;  ///< by the frame in which they rest
+  int bodies_drawn_ = -1;  ///< in the latest picture; -1: not told in the status
 };
 
 }  // namespace frontalis

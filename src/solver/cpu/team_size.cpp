@@ -1,6 +1,8 @@
 #include "solver/cpu/team_size.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 
 namespace frontalis
 {
@@ -48,8 +50,10 @@ void TeamSize::end_period()
   if (trials_.empty() && (now_ < next_search_ || (held == 0 && working_ == most_)))
     return;
   trials_.push_back({ working_, steps_ / seconds_ });
+  // If all are held, as by a limit of processor time, as many may be enough as ran at a time on average.
+  const auto ran = std::lround(std::accumulate(ran_.begin(), ran_.end(), 0.0) / seconds_);
   if (held > 0)
-    plan_trial(working_ - held);
+    plan_trial(held < working_ ? working_ - held : std::min(working_ - 1, static_cast<int>(ran)));
   if (trials_.size() == 1)
     plan_trial(most_);
   if (!planned_.empty())

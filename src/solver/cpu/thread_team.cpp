@@ -36,7 +36,7 @@ ThreadTeam::ThreadTeam(int threads)
   {
     for (int t = 1; t < count; ++t)
       workers_.emplace_back([this, t] { work(t); });
-    size_ = count;
+    next_size_ = count;
   }
   catch (const std::system_error& error)
   {
@@ -58,17 +58,14 @@ void ThreadTeam::stop()
     worker.join();
 }
 
-void ThreadTeam::resize(int size)
-{
-  const std::lock_guard<std::mutex> lock(mutex_);
-  size_ = std::clamp(size, 1, static_cast<int>(workers_.size()) + 1);
-}
+void ThreadTeam::resize(int size) { next_size_ = std::clamp(size, 1, static_cast<int>(workers_.size()) + 1); }
 
 void ThreadTeam::run(const std::function<void(int)>& task)
 {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     task_ = &task;
+    size_ = next_size_;  // together with the generation, so that a thread that wakes late takes no former task
     ++generation_;
   }
   wake_.notify_all();
@@ -79,7 +76,8 @@ void ThreadTeam::run(const std::function<void(int)>& task)
 void ThreadTeam::barrier()
 {
   const std::uint64_t phase = phase_.load(std::memory_order_acquire);
-  if (arrived_.fetch_add(1, std::memory_order_acq_rel) + 1 == size())
+  const int all = size_;  // read before the arrival, after which the next task may begin
+  if (arrived_.fetch_add(1, std::memory_order_acq_rel) + 1 == all)
   {
     arrived_.store(0, std::memory_order_relaxed);
     phase_.store(phase + 1, std::memory_order_release);

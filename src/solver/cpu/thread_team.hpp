@@ -22,8 +22,8 @@ public:
   ThreadTeam& operator=(const ThreadTeam&) = delete;
 
   /// The number of threads that work, at first all.
-  int size() const { return size_; }
-  /// Lets the first `size` threads work, and the others sleep. Not to be called inside a task.
+  int size() const { return next_size_; }
+  /// Lets the first `size` threads work in following tasks, and the others sleep. Not to be called inside a task.
   void resize(int size);
   /// Runs task(thread) on every working thread and returns when all are done. The caller is thread 0. The task must not
   /// throw.
@@ -41,7 +41,8 @@ private:
   const std::function<void(int)>* task_ = nullptr;
   std::uint64_t generation_ = 0;
   bool stop_ = false;
-  int size_ = 1;
+  int size_ = 1;       // of the task that runs or ran last
+  int next_size_ = 1;  // of the next one
   std::atomic<int> arrived_{ 0 };
   std::atomic<std::uint64_t> phase_{ 0 };
 };

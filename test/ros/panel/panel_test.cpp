@@ -10,6 +10,7 @@
 #include <rviz/render_panel.h>
 #include <rviz/visualization_frame.h>
 #include <rviz/visualization_manager.h>
+#include <sensor_msgs/PointCloud2.h>
 
 #include <gtest/gtest.h>
 
@@ -161,18 +162,37 @@ TEST_F(Panel, MovesTheFaceAndShowsIt)
   std::remove(saved.c_str());
 }
 
-TEST_F(Panel, TheDisplayDrawsTheSkinWhileItIsEnabled)
+/// The text of a display's status; empty if it has none of this name.
+std::string status(const rviz::Display& display, const QString& name)
+{
+  for (int child = 0; child < display.numChildren(); ++child)
+    for (int entry = 0; entry < display.childAt(child)->numChildren(); ++entry)
+      if (const rviz::Property* const said = display.childAt(child)->childAt(entry); said->getName() == name)
+        return said->getValue().toString().toStdString();
+  return {};
+}
+
+TEST_F(Panel, TheDisplayDrawsTheSkinAndSaysWhatIsMissing)
 {
   rviz::Display* const face = frame_->getManager()->getRootDisplayGroup()->getDisplayAt(0);
   ASSERT_EQ(face->getClassId(), "frontalis/Face");
   EXPECT_TRUE(run_until([&] { return drawn() > 0.02; }));
+  EXPECT_TRUE(run_until([&] { return status(*face, "Skin").find(" triangles") != std::string::npos; }));
   face->setEnabled(false);
   EXPECT_TRUE(run_until([&] { return drawn() == 0; }));
   face->setEnabled(true);
   EXPECT_TRUE(run_until([&] { return drawn() > 0.02; }));
-  // without triangles there is nothing to draw, which the status says
+
   face->subProp("Topic")->setValue("/elsewhere/skin_points");
-  EXPECT_TRUE(run_until([&] { return drawn() == 0; }));
+  EXPECT_TRUE(run_until([&] { return status(*face, "Skin") == "no vertices have come" && drawn() == 0; }));
+  sensor_msgs::PointCloud2 cloud;
+  cloud.header.frame_id = "map";
+  const ros::Publisher publisher =
+      ros::NodeHandle().advertise<sensor_msgs::PointCloud2>("/elsewhere/skin_points", 1, true);
+  publisher.publish(cloud);
+  EXPECT_TRUE(run_until([&] { return status(*face, "Skin") == "no triangles have come on skin_topology"; }));
+  face->subProp("Topic")->setValue("/not-a-name/skin_points");
+  EXPECT_TRUE(run_until([&] { return status(*face, "Topic").find("Error subscribing") == 0; }));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "ros/rviz/coloured_triangles.hpp"
+#include "ros/coloured_triangles.hpp"
 
 #include "frontalis/error.hpp"
 #include "frontalis/ros/shading.hpp"
@@ -55,8 +55,26 @@ std::vector<ColouredVertex> vertices_of(const sensor_msgs::PointCloud2& cloud)
   return out;
 }
 
+ColouredTriangles skin_of(const sensor_msgs::PointCloud2& cloud, const shape_msgs::Mesh& topology)
+{
+  ColouredTriangles out{ vertices_of(cloud), {} };
+  for (const auto& triangle : topology.triangles)
+    for (const std::uint32_t vertex : triangle.vertex_indices)
+    {
+      if (vertex >= out.vertices.size())
+        throw Error("a triangle of skin_topology has a vertex that does not exist");
+      out.corners.push_back(vertex);
+    }
+  return out;
+}
+
 ColouredTriangles body_of(const visualization_msgs::Marker& marker)
 {
+  if (marker.points.size() < 3)
+    throw Error("it has no triangle");
+  for (const auto& point : marker.points)
+    if (!std::isfinite(point.x + point.y + point.z))
+      throw Error("a vertex is not finite");
   const RenderMesh mesh = mesh_of_body(marker);
   const std::vector<std::array<float, 3>> colours = lit(mesh);
   const auto byte = [](float share) { return static_cast<std::uint8_t>(std::lround(255 * share)); };

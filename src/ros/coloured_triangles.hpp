@@ -1,6 +1,7 @@
 #pragma once
 
 #include <sensor_msgs/PointCloud2.h>
+#include <shape_msgs/Mesh.h>
 #include <visualization_msgs/Marker.h>
 
 #include <array>
@@ -27,7 +28,12 @@ struct ColouredTriangles
 /// of another cloud and if a coordinate is not finite.
 std::vector<ColouredVertex> vertices_of(const sensor_msgs::PointCloud2& cloud);
 
-/// A body of the topic ~bodies as lit by the face's lamps, in the frame of the marker.
+/// The skin: the vertices of a cloud and the triangles of ~skin_topology. Throws Error as vertices_of(), and if a
+/// triangle has a vertex that does not exist.
+ColouredTriangles skin_of(const sensor_msgs::PointCloud2& cloud, const shape_msgs::Mesh& topology);
+
+/// A body of the topic ~bodies as lit by the face's lamps, in the frame of the marker. Throws Error if it has no
+/// triangle or a vertex that is not finite.
 ColouredTriangles body_of(const visualization_msgs::Marker& marker);
 
 }  // namespace frontalis
