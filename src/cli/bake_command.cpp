@@ -65,7 +65,7 @@ void bake_to_file(const BakeOptions& options)
   fmt::print("muscles  {}\n", model.muscles.size());
   fmt::print("skin     {} vertices, {} triangles\n", model.skin.vertices.size(), model.skin.triangles.size());
   if (!options.report && !summary.findings.empty())
-    fmt::print("findings {}; --report prints them\n", summary.findings.size());
+    fmt::print("findings {}; bake --report prints them\n", summary.findings.size());
   fmt::print("written  {} in {:.2f} s\n", options.output, seconds);
 }
 

@@ -47,6 +47,8 @@ std::string request_of(const FitActivationGoal& goal)
   }
   if (!any)
     throw Error("there are no targets: every coordinate is missing");
+  if (!(goal.deviation >= 0 && std::isfinite(goal.deviation)))
+    throw Error(fmt::format("deviation: found {} m; must be above 0, or 0 for the default", goal.deviation));
   YAML::Emitter text;
   const auto coordinate = [&](double value)
   {

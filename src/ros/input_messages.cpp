@@ -18,6 +18,8 @@ namespace
 
 constexpr std::size_t reason_length = 400;    // longest text of a warning, since a message may name a million muscles
 constexpr std::size_t most_points = 100'000;  // largest number of points of a trajectory
+constexpr double farthest_bone = 0.5;         // largest coordinate of a bone's translation [m]
+const ros::WallDuration warning_pause(1);     // between warnings of one topic while reasons change [s]
 constexpr double longest_wait = 60;           // longest time until a trajectory begins [s]
 
 void check_lengths(std::size_t names, std::size_t values, std::size_t most, const char* what)
@@ -82,9 +84,14 @@ void FaceInputs::take(const char* topic, const ros::Time& stamp, const Act& act)
     }
   if (fault.size() > reason_length)
     fault = fault.substr(0, reason_length) + " ...";
-  if (!series.warned)
+  const ros::WallTime wall = ros::WallTime::now();
+  if (!series.warned || (fault != series.told && wall - series.told_at > warning_pause))
+  {
     ROS_WARN_STREAM(name_ << ": message on ~" << topic << " refused: " << fault
                           << "; further ones are counted in /diagnostics");
+    series.told = fault;
+    series.told_at = wall;
+  }
   series.warned = true;
   ++series.refused;
   series.reason = fault;
@@ -280,6 +287,13 @@ void FaceInputs::on_bone_pose(const geometry_msgs::TransformStamped& message)
          for (const BoneFrame& followed : parameters_.bone_frames)
            if (followed.bone == bone)
              throw Error("bone '" + bone + "' follows the frame '" + followed.frame + "' (~bone_frames)");
+         const geometry_msgs::Vector3& shift = message.transform.translation;
+         for (const double coordinate : { shift.x, shift.y, shift.z })
+           if (std::abs(coordinate) > farthest_bone)
+             throw Error(
+                 fmt::format("translation of bone '{}': found {} m; allowed are -{} to {} m (translations are "
+                             "in metres)",
+                             bone, coordinate, farthest_bone, farthest_bone));
          running.set_bone(bone, to_motion(message.transform));
          posed_.erase(bone);
          if (demo_playing_ && demo_->moves(bone))

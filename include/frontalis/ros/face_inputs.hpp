@@ -15,6 +15,7 @@
 #include <frontalis/MuscleActivation.h>
 #include <geometry_msgs/TransformStamped.h>
 #include <ros/node_handle.h>
+#include <ros/time.h>
 #include <sensor_msgs/JointState.h>
 #include <trajectory_msgs/JointTrajectory.h>
 
@@ -30,7 +31,8 @@ namespace frontalis
 {
 
 /// The topics that move a face (doc/ros.md). A muscle follows its latest command, whatever the topic. A message with a
-/// fault is refused as a whole; a series of such messages is warned about once. Any thread may call these functions.
+/// fault is refused as a whole; a warning is logged when a series of such messages begins or has another reason. Any
+/// thread may call these functions.
 class FaceInputs
 {
 public:
@@ -119,6 +121,8 @@ private:
     std::uint64_t taken = 0, refused = 0;
     bool warned = false;  ///< whether the present series of refused messages was warned about
     std::string reason;   ///< reason of the latest refusal
+    std::string told;     ///< reason that the latest warning gave
+    ros::WallTime told_at;
   };
   std::map<std::string, Topic> topics_;
 };
