@@ -25,7 +25,7 @@ std::array<std::size_t, 4> places(const sensor_msgs::PointCloud2& cloud)
                                     [&](const auto& candidate) { return candidate.name == names[i]; });
     if (field == cloud.fields.end() || field->datatype != sensor_msgs::PointField::FLOAT32 ||
         std::size_t(field->offset) + sizeof(float) > cloud.point_step || cloud.is_bigendian)
-      throw Error("the cloud needs x, y, z and rgb as little-endian float32");
+      throw Error("the cloud needs x, y, z and rgb as little-endian float32, as skin_points has them");
     out[i] = field->offset;
   }
   return out;

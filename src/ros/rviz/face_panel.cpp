@@ -1,5 +1,7 @@
 #include "ros/rviz/face_panel.hpp"
 
+#include "ros/rviz/muscle_names.hpp"
+
 #include <dynamic_reconfigure/Reconfigure.h>
 #include <frontalis/ActionUnits.h>
 #include <frontalis/Expression.h>
@@ -36,33 +38,6 @@ namespace
 constexpr int full = 1000;                    // value of a slider at activation 1
 constexpr std::chrono::seconds untouched(1);  // time after an edit until a slider shows the face's activation again
 
-bool ends_with(const std::string& text, const std::string& end)
-{
-  return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
-
-/// The name of a muscle without its side.
-std::string stem(const std::string& muscle)
-{
-  for (const std::string side : { "_left", "_right" })
-    if (ends_with(muscle, side))
-      return muscle.substr(0, muscle.size() - side.size());
-  return muscle;
-}
-
-/// The muscle of the other side; empty if the muscle has no side.
-std::string counterpart(const std::string& muscle)
-{
-  const bool left = ends_with(muscle, "_left");
-  return left || ends_with(muscle, "_right") ? stem(muscle) + (left ? "_right" : "_left") : "";
-}
-
-QString words(std::string name)
-{
-  std::replace(name.begin(), name.end(), '_', ' ');
-  return QString::fromStdString(name);
-}
-
 }  // namespace
 
 FacePanel::FacePanel(QWidget* parent)
@@ -78,7 +53,7 @@ FacePanel::FacePanel(QWidget* parent)
       tabs_(new QTabWidget),
       speed_(new QProgressBar),
       energy_(new QLabel),
-      message_(new QLabel("no face yet"))
+      message_(new QLabel)
 {
   auto* const top = new QHBoxLayout;
   top->addWidget(new QLabel("Face"));
@@ -191,9 +166,8 @@ void FacePanel::save(rviz::Config config) const
 
 void FacePanel::connect_to_face()
 {
-  clear_muscles();
-  message_->setText("no face yet");
   state_.shutdown();
+  show_no_face();
   const std::string face = face_->text().toStdString();
   try
   {
@@ -209,6 +183,15 @@ void FacePanel::connect_to_face()
   {
     message_->setText(QString::fromStdString("'" + face + "' is no name of a face: " + error.what()));
   }
+}
+
+void FacePanel::show_no_face()
+{
+  message_->setText("no face publishes " + face_->text() + "/state");
+  energy_->clear();
+  speed_->setValue(0);
+  if (!slider_of_.empty())
+    clear_muscles();
 }
 
 template <typename Service>
@@ -239,6 +222,8 @@ void FacePanel::poll()
     }
     else
       ++pending;
+  if (state_ && state_.getNumPublishers() == 0)
+    return show_no_face();
   if (!slider_of_.empty() || asked_ || !state_)
     return;
   asked_ = true;

@@ -43,6 +43,7 @@ public:
 private:
   /// Subscribes and advertises under the name of the face, and forgets its muscles.
   void connect_to_face();
+  void show_no_face();
   /// Handles finished calls of services, and asks for the muscles of the face if they are unknown.
   void poll();
   void show_muscles(const ListMuscles::Response& face);

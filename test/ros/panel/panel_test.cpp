@@ -19,6 +19,8 @@
 #include <QCheckBox>
 #include <QComboBox>
 #include <QDoubleSpinBox>
+#include <QLabel>
+#include <QLineEdit>
 #include <QProgressBar>
 #include <QSlider>
 
@@ -160,6 +162,24 @@ TEST_F(Panel, MovesTheFaceAndShowsIt)
   EXPECT_NE(text.find("Class: frontalis/FacePanel"), std::string::npos);
   EXPECT_NE(text.find("Left Equals Right: false"), std::string::npos);
   std::remove(saved.c_str());
+}
+
+TEST_F(Panel, SaysThatThereIsNoFace)
+{
+  auto* const name = find<QLineEdit>("face");
+  auto* const message = find<QLabel>("message");
+  ASSERT_TRUE(name && message);
+  const auto call = [&](const char* face)
+  {
+    name->setText(face);
+    Q_EMIT name->editingFinished();
+  };
+  call("/elsewhere");
+  EXPECT_TRUE(run_until([&] { return message->text() == "no face publishes /elsewhere/state"; }));
+  EXPECT_EQ(find<QProgressBar>("speed")->value(), 0);
+  EXPECT_EQ(frame_->findChild<QSlider*>("frontalis_left"), nullptr);
+  call("/face");
+  EXPECT_TRUE(find<QSlider>("frontalis_left"));
 }
 
 /// The text of a display's status; empty if it has none of this name.
