@@ -2,6 +2,7 @@
 
 #include "frontalis/model/model.hpp"
 #include "solver/skin/cell_means.hpp"
+#include "solver/skin/film_energy.hpp"
 
 #include <array>
 #include <cstdint>
@@ -72,22 +73,13 @@ public:
 private:
   using Field = CellMeans::Field;
 
-  // Heights, and the results of apply() for them, per vertex.
-  struct Wave
-  {
-    Field height, laplace, force;
-  };
-
   void make_operators();
   void make_seed();
   void make_creases();
   void find_strain(const std::vector<std::array<float, 3>>& vertices);
   void find_active(Field& w);
-  void precondition(Field& inverse) const;
-  void apply(const Field& w, Field& out, Field* forced) const;
-  void mean_products(const Wave& u, const Wave& v, Field& out) const;
-  double quadratic(const Wave& u) const;
-  void gradient(const Wave& u, const Field& relief, Field& out);
+  void set_energy();
+  void laplacian(const Field& w, Field& out) const;
 
   FilmEquilibrium(const Model& model, std::size_t law, std::vector<std::int32_t> region);
 
@@ -101,14 +93,25 @@ private:
   std::vector<std::int32_t> begin_, neighbour_;  // neighbours of vertex v: from begin_[v] to begin_[v + 1]
   // per neighbour: weight of the edge in the operator div N grad, as a tensor to be contracted with N
   std::vector<FilmTensor> edge_;
-  Field squared_;                     // per neighbour: squared length of the edge at rest
-  Field laplace_, membrane_;          // per neighbour: that weight for N = 1, and for the present membrane force
-  Field area_, seed_;                 // per vertex
-  Field crease_, crease_force_;       // per vertex: heights w0, and the force that pulls towards them
-  std::vector<bool> resolved_;        // whether a vertex is inside the mesh and its edges are short enough
-  std::vector<std::int32_t> active_;  // vertices that may have a height
-  std::vector<FilmTensor> strain_;    // per vertex
-  Field curvature_, local_;           // temporary arrays of gradient()
+  // An edge at rest: its other vertex, its squared length, and a quarter of its tensor.
+  struct RestEdge
+  {
+    std::int32_t to;
+    float squared;
+    FilmTensor quarter;
+  };
+  std::vector<RestEdge> rest_edges_;      // of each vertex, those to later vertices
+  std::vector<std::int32_t> edges_from_;  // their number per vertex
+  Field laplace_;                         // per neighbour: that weight for N = 1
+  Field area_, seed_;                     // per vertex
+  Field crease_, crease_force_;           // per vertex: heights w0, and the force that pulls towards them
+  std::vector<bool> resolved_;            // whether a vertex is inside the mesh and its edges are short enough
+  std::vector<std::int32_t> active_;      // vertices that may have a height
+  std::vector<FilmTensor> strain_;        // per vertex; after find_active() valid where known_ is not 0
+  std::vector<char> known_;
+  std::vector<FilmTensor> mean_strain_;  // per corner of the cells
+  FilmEnergy energy_;
+  std::vector<std::int32_t> rank_, corner_rank_;  // -1 outside of set_energy()
 };
 
 }  // namespace frontalis

@@ -63,7 +63,7 @@ FilmEquilibrium::FilmEquilibrium(const Model& model, std::size_t law, std::vecto
 {
   for (const std::int32_t v : cells_.order())
     order_.push_back(region[v]);
-  for (Field* field : { &seed_, &curvature_, &local_, &crease_, &crease_force_ })
+  for (Field* field : { &seed_, &crease_, &crease_force_ })
     field->resize(order_.size());
   make_operators();
   make_seed();
@@ -134,19 +134,21 @@ void FilmEquilibrium::make_operators()
   for (std::size_t v = 0; v < count; ++v)
   {
     bool inside = !edges[v].empty();
+    const std::size_t earlier = rest_edges_.size();
     for (const auto& [to, edge] : edges[v])
     {
       neighbour_.push_back(to);
       edge_.push_back(edge.sum);
-      squared_.push_back(edge.squared);
+      if (to > static_cast<std::int32_t>(v))
+        rest_edges_.push_back({ to, edge.squared, 0.25F * edge.sum });
       laplace_.push_back(trace(edge.sum));
       inside = inside && edge.triangles == 2;
     }
+    edges_from_.push_back(static_cast<std::int32_t>(rest_edges_.size() - earlier));
     begin_.push_back(static_cast<std::int32_t>(neighbour_.size()));
     area_.push_back(static_cast<float>(area[v] * k_ * k_));
     resolved_.push_back(inside && length[v] * k_ < 2 * physics::pi * longest_edge);
   }
-  membrane_.resize(laplace_.size());
   cells_.set_areas(area_);
 }
 
@@ -176,12 +178,22 @@ void FilmEquilibrium::make_creases()
 {
   for (std::size_t v = 0; v < order_.size(); ++v)
     crease_[v] = model_.film.crease[order_[v]] / static_cast<float>(law_.thickness);
-  active_.resize(order_.size());
-  std::iota(active_.begin(), active_.end(), 0);
-  apply(crease_, curvature_, nullptr);
-  for (std::size_t v = 0; v < curvature_.size(); ++v)
-    curvature_[v] = area_[v] > 0 ? curvature_[v] / area_[v] : 0;
-  apply(curvature_, crease_force_, nullptr);
+  Field curvature(order_.size());
+  laplacian(crease_, curvature);
+  for (std::size_t v = 0; v < curvature.size(); ++v)
+    curvature[v] = area_[v] > 0 ? curvature[v] / area_[v] : 0;
+  laplacian(curvature, crease_force_);
+}
+
+// Minus the Laplacian of w, times the area of each vertex.
+void FilmEquilibrium::laplacian(const Field& w, Field& out) const
+{
+  for (std::size_t v = 0; v < w.size(); ++v)
+  {
+    out[v] = 0;
+    for (std::int32_t s = begin_[v]; s < begin_[v + 1]; ++s)
+      out[v] += laplace_[s] * (w[v] - w[neighbour_[s]]);
+  }
 }
 
 }  // namespace frontalis
