@@ -119,10 +119,12 @@ void measure_faces(FacesOptions& options)
   }
   progress.clear();
   fmt::print("{}", faces_table(rows, options.all_landmarks).text());
+  // What lacks expressions does not look like the whole.
+  const std::string part = interrupted ? ".part" : "";
   if (!options.json.empty())
-    write_text(options.json, faces_table(rows, true).json());
+    write_text(options.json + part, faces_table(rows, true).json());
   if (!options.table.empty())
-    write_text(options.table, faces_table(rows, options.all_landmarks).markdown());
+    write_text(options.table + part, faces_table(rows, options.all_landmarks).markdown());
   if (!options.pictures.empty() && !pictures.empty())
     write_contact_sheet(pictures, options.view, options.columns, options.pictures + "/faces");
   if (interrupted)
@@ -154,7 +156,8 @@ void add_faces_command(CLI::App& app)
       ->check(CLI::NonNegativeNumber);
   command->add_flag("--all-landmarks", options->all_landmarks, "list landmarks of which nothing is published, too");
   command->add_flag("--measure", options->measured_only, "only measure: faces unlike people's are no error");
-  command->add_option("--json", options->json, "write the figures of all landmarks to this file");
+  command->add_option("--json", options->json,
+                      "write the figures of all landmarks to this file (FILE.part if interrupted)");
   command->add_option("--table", options->table, "write the table to this file, as markdown");
   CLI::Option* const pictures = command->add_option(
       "--pictures", options->pictures, "write a contact sheet to faces.png in this folder (needs gnuplot)");

@@ -18,7 +18,7 @@ class PoseReader
 public:
   PoseReader(Scene& scene, const SceneNames& names, bool shared) : scene_(scene), names_(names), shared_(shared) {}
 
-  void read(const Node& node, const Bound& weights, std::map<std::string, FacePose>& poses) const
+  void read(const Node& node, const Bound& weights, FacePoses& poses) const
   {
     for (const auto& [name, entry] : node.named_pairs())
     {

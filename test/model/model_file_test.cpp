@@ -177,6 +177,24 @@ TEST_F(ModelFile, TruncatedFilesAreRefusedAtEveryLength)
   }
 }
 
+TEST_F(ModelFile, ADamagedValueIsFound)
+{
+  Model model = full_block(3, 2, 2);
+  const float fill[] = { 0.8125F, 0.4375F, 0.3125F };
+  std::copy(std::begin(fill), std::end(fill), model.fill.begin());
+  write_model(model, path("a.vtkhdf"));
+  std::string content = text_of(path("a.vtkhdf"));
+  // The arrays for ParaView have the same numbers.
+  const std::string bytes(reinterpret_cast<const char*>(fill), sizeof fill);
+  std::size_t found = 0;
+  for (std::size_t at = content.find(bytes); at != std::string::npos; at = content.find(bytes, at + 1), ++found)
+    content[at + 1] ^= 4;
+  ASSERT_GT(found, 0u);
+  std::ofstream(path("b.vtkhdf"), std::ios::binary) << content;
+  const std::string fault = fault_of(path("b.vtkhdf"));
+  EXPECT_NE(fault.find("fill cannot be read; the file is truncated or damaged"), std::string::npos) << fault;
+}
+
 TEST_F(ModelFile, AnotherVersionIsRefusedWithBothNumbers)
 {
   write_model(full_block(2, 2, 2), path("a.vtkhdf"));

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <iterator>
 #include <map>
 #include <regex>
 #include <set>
@@ -26,6 +27,7 @@ TEST(SharedActionUnits, what_the_scene_lacks_is_left_out)
                "  AU1: {pull: 1, absent: 1}\n"
                "  AU2: {absent: 1}\n"
                "  AU26: {bones: {jaw: {shift: [0, 0, -2]}, tail: {shift: [1, 0, 0]}}}\n"
+               "  AU4: {pull: 0.5}\n"
                "expressions:\n"
                "  up: {AU1: 0.5, AU2: 1}\n"
                "  down: {AU2: 1}\n"
@@ -41,7 +43,8 @@ TEST(SharedActionUnits, what_the_scene_lacks_is_left_out)
       "action_units: units.yaml\n"
       "expressions: {mine: {pull_left: 0.25}}\n";
   const Scene scene = read_scene(folder.write("scene.yaml", scene_text));
-  ASSERT_EQ(scene.action_units.size(), 2U);
+  ASSERT_EQ(scene.action_units.size(), 3U);
+  EXPECT_EQ(std::next(scene.action_units.begin())->first, "AU4") << "numbers in names have their order";
   EXPECT_EQ(scene.action_units.at("AU1").activation,
             (std::map<std::string, double>{ { "pull_left", 1 }, { "pull_right", 1 } }));
   ASSERT_EQ(scene.action_units.at("AU26").bones.size(), 1U);

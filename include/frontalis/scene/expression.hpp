@@ -2,6 +2,7 @@
 
 #include "frontalis/scene/geometry.hpp"
 
+#include <cstring>
 #include <map>
 #include <string>
 #include <vector>
@@ -18,6 +19,12 @@ struct BonePose
   double angle = 0;          ///< angle of the bone's joint (Scene::joints) [rad]; replaces shift and turn
 };
 
+/// Orders names as text, but digits in them as numbers: AU2 is before AU12.
+struct NumbersInNames
+{
+  bool operator()(const std::string& a, const std::string& b) const { return strverscmp(a.c_str(), b.c_str()) < 0; }
+};
+
 /// Activations and poses of bones of an expression or an action unit at full intensity.
 struct FacePose
 {
@@ -25,6 +32,7 @@ struct FacePose
   std::map<std::string, double> activation;
   std::vector<BonePose> bones;  ///< poses of bones; other bones stay where they are
 };
+using FacePoses = std::map<std::string, FacePose, NumbersInNames>;
 
 /// One phase of the demonstration: a linear ramp to an expression and to poses of bones, which are then held.
 struct DemoPhase

@@ -135,8 +135,7 @@ struct Scene
   std::vector<AccuracyProfile> profiles;
   /// Centres of the rotations of bones in poses [m]. Other bones rotate about the face frame's origin.
   std::map<std::string, Vector3> bone_centres;
-  std::map<std::string, FacePose> action_units;
-  std::map<std::string, FacePose> expressions;
+  FacePoses action_units, expressions;
   std::vector<DemoPhase> demo;
   std::string content;  ///< canonical text of all that the bake depends on, hashes of files included: key of caches
   std::vector<SceneFilm> films{};  ///< of parts of the skin; a later one replaces earlier ones where it is
