@@ -44,22 +44,61 @@ double first_minimum(double slope, double curvature, double third, double fourth
 
 }  // namespace
 
-// Inverse of the diagonal of the quadratic energy's matrix.
-Field FilmEnergy::preconditioner() const
+// Inverse of the diagonal of the matrix K + A: minus the Laplacian plus 1, times the area.
+Field FilmEnergy::inverse_diagonal() const
 {
   Field inverse(vertices());
   for (std::size_t v = 0; v < vertices(); ++v)
   {
-    float own = area[v], others = 0, force = 0;
+    float own = area[v];
     for (std::int32_t s = begin[v]; s < begin[v + 1]; ++s)
-    {
       own += laplace[s];
-      others += laplace[s] * laplace[s] / neighbour_area[s];
-      force += membrane[s];
-    }
-    inverse[v] = 1 / (0.75F * (own * own / area[v] + others) + std::max(force, 0.0F));
+    inverse[v] = 1 / own;
   }
   return inverse;
+}
+
+// Solves (K + A) x = b roughly, by Chebyshev iterations for the matrix divided by its diagonal (Saad 2003, Iterative
+// methods for sparse linear systems, section 12.3), whose eigenvalues are about 0.1 to 2. x and change have a last
+// entry for other vertices.
+void FilmEnergy::solve_roughly(const Field& b, const Field& inverse, Field& change, Field& x) const
+{
+  constexpr int passes = 6;
+  constexpr float low = 0.1F, high = 2.1F, middle = 0.5F * (high + low), half = 0.5F * (high - low);
+  Field rest(vertices());
+  for (std::size_t v = 0; v < vertices(); ++v)
+  {
+    rest[v] = inverse[v] * b[v];
+    x[v] = change[v] = rest[v] / middle;
+  }
+  float ratio = half / middle;
+  for (int pass = 1; pass < passes; ++pass)
+  {
+    const float next = 1 / (2 * middle / half - ratio);
+    for (std::size_t v = 0; v < vertices(); ++v)
+    {
+      float sum = area[v] * change[v];
+      for (std::int32_t s = begin[v]; s < begin[v + 1]; ++s)
+        sum += laplace[s] * (change[v] - change[neighbour[s]]);
+      rest[v] -= inverse[v] * sum;
+    }
+    for (std::size_t v = 0; v < vertices(); ++v)
+    {
+      change[v] = next * ratio * change[v] + 2 * next / half * rest[v];
+      x[v] += change[v];
+    }
+    ratio = next;
+  }
+}
+
+// Divides by the matrix of the energy of bending and base, 3/4 (K + A) A^-1 (K + A).
+void FilmEnergy::precondition(const Field& slope, const Field& inverse, Field& change, Field& x) const
+{
+  solve_roughly(slope, inverse, change, x);
+  Field middle(vertices());
+  for (std::size_t v = 0; v < vertices(); ++v)
+    middle[v] = 4.0F / 3 * area[v] * x[v];
+  solve_roughly(middle, inverse, change, x);
 }
 
 void FilmEnergy::apply(Wave& wave) const
@@ -159,7 +198,8 @@ int FilmEnergy::minimise(Field& height, int most_iterations) const
   const Field zero(count, 0), with_others(count + 1, 0);
   Wave now{ height, zero, zero }, step{ with_others, zero, zero };
   now.height.push_back(0);
-  const Field inverse = preconditioner();
+  const Field inverse = inverse_diagonal();
+  Field change = with_others, towards = with_others;
   Field before_this = zero, slope = zero, curvature = with_others, relief, mixed, squared;
   apply(now);
   mean_products(now, now, mixed, relief);
@@ -174,15 +214,16 @@ int FilmEnergy::minimise(Field& height, int most_iterations) const
   for (; iteration < most_iterations && count > 0; ++iteration)
   {
     gradient(now, relief, curvature, slope);
-    const double norm = sum_of(count, [&](std::size_t v) { return inverse[v] * slope[v] * slope[v]; }),
-                 common = sum_of(count, [&](std::size_t v) { return inverse[v] * slope[v] * before_this[v]; }),
+    precondition(slope, inverse, change, towards);
+    const double norm = sum_of(count, [&](std::size_t v) { return towards[v] * slope[v]; }),
+                 common = sum_of(count, [&](std::size_t v) { return towards[v] * before_this[v]; }),
                  along = sum_of(count, [&](std::size_t v) { return step.height[v] * slope[v]; });
     auto conjugacy = static_cast<float>(norm_before > 0 ? std::max(0.0, (norm - common) / norm_before) : 0);
     norm_before = norm;
     if (conjugacy * along >= norm)
       conjugacy = 0;
     for (std::size_t v = 0; v < count; ++v)
-      step.height[v] = conjugacy * step.height[v] - inverse[v] * slope[v];
+      step.height[v] = conjugacy * step.height[v] - towards[v];
     const double down = sum_of(count, [&](std::size_t v) { return step.height[v] * slope[v]; });
     before_this.swap(slope);
     if (!(down < 0))

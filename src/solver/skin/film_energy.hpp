@@ -17,7 +17,6 @@ struct FilmEnergy
   /// vertices as its index
   std::vector<std::int32_t> begin, neighbour;
   Field laplace, membrane;   ///< per neighbour: weights of the operators div grad and div N grad, N the membrane force
-  Field neighbour_area;      ///< per neighbour: area of that vertex
   Field area, crease_force;  ///< per vertex
   /// Per vertex: corners of its cell, and its weights there. Vertices of a cell follow each other.
   std::vector<std::array<std::int32_t, 8>> corner;
@@ -27,7 +26,8 @@ struct FilmEnergy
   std::size_t vertices() const { return area.size(); }
 
   /// Lowers the energy, until an iteration lowers it by little or the most iterations have been made, by conjugate
-  /// gradients (Polak & Ribiere) with exact line search. Returns the number of iterations.
+  /// gradients (Polak & Ribiere) with exact line search, preconditioned by the energy of bending and base. Returns the
+  /// number of iterations.
   int minimise(Field& height, int most_iterations) const;
 
 private:
@@ -37,7 +37,9 @@ private:
   {
     Field height, laplace, force;
   };
-  Field preconditioner() const;
+  Field inverse_diagonal() const;
+  void solve_roughly(const Field& b, const Field& inverse, Field& change, Field& x) const;
+  void precondition(const Field& slope, const Field& inverse, Field& change, Field& x) const;
   void apply(Wave& wave) const;
   void mean_products(const Wave& u, const Wave& v, Field& mixed, Field& squared) const;
   void gradient(const Wave& u, const Field& relief, Field& curvature, Field& out) const;

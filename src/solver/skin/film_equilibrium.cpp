@@ -112,7 +112,6 @@ void FilmEquilibrium::set_energy()
       const std::int32_t n = neighbour_[s];
       const FilmTensor beside = strain_of(n);
       energy_.neighbour.push_back(rank_[n] < 0 ? count : rank_[n]);
-      energy_.neighbour_area.push_back(area_[n]);
       energy_.laplace.push_back(laplace_[s]);
       energy_.membrane.push_back(0.5F * scale *
                                  ((1 - poisson) * (contract(edge_[s], strain) + contract(edge_[s], beside)) +

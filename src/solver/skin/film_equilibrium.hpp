@@ -64,7 +64,7 @@ public:
   /// `law`: index in the film's laws, whose region this is. The model must outlive this object.
   FilmEquilibrium(const Model& model, std::size_t law);
 
-  static constexpr int most_iterations = 40;
+  static constexpr int most_iterations = 14;
 
   /// Improves `height` ([m], one per vertex of the skin; empty: flat) in the region until the film is in equilibrium or
   /// most_iterations have been made. Returns the number of iterations. `vertices`: those of the skin without lines [m].
