@@ -189,6 +189,23 @@ TEST(Film, AThirdOfACreaseShowsAtRest)
               0.02 * deep);
 }
 
+// Heights are 0 at the border of a region, where the skin's mesh ends or a film of another kind begins.
+TEST(Film, CreasesMakeNoLineAlongTheBorder)
+{
+  Model model = film_model(100);
+  const double k = 2 * pi / film_wavelength(model.film.laws[0]), deep = thickness, w = width(model);
+  const auto from_border = [&](const auto& v) { return std::min({ v[0], v[1], w - v[0], w - v[1] }); };
+  for (const auto& v : model.skin.vertices)
+    model.film.crease.push_back(static_cast<float>(deep * std::sin(k * from_border(v))));
+  FilmEquilibrium creased(model, 0);
+  const std::vector<float> height = heights(creased, compressed(model, 0));
+  double most = 0;
+  for (std::size_t v = 0; v < height.size(); ++v)
+    if (k * from_border(model.skin.vertices[v]) < 0.6 * pi)
+      most = std::max(most, static_cast<double>(std::abs(height[v])));
+  EXPECT_LT(most, 0.5 * deep);
+}
+
 TEST(Film, LinesAreWhereTheSkinIsCompressed)
 {
   const Model model = film_model(100);

@@ -180,8 +180,9 @@ void FilmEquilibrium::make_creases()
     crease_[v] = model_.film.crease[order_[v]] / static_cast<float>(law_.thickness);
   Field curvature(order_.size());
   laplacian(crease_, curvature);
+  // Where creases end their slope jumps. Vertices beyond, whose heights were 0, have no part in their energy.
   for (std::size_t v = 0; v < curvature.size(); ++v)
-    curvature[v] = area_[v] > 0 ? curvature[v] / area_[v] : 0;
+    curvature[v] = crease_[v] != 0 && area_[v] > 0 ? curvature[v] / area_[v] : 0;
   laplacian(curvature, crease_force_);
 }
 
