@@ -12,8 +12,9 @@ namespace test
 constexpr double film_thickness = 0.1e-3;
 
 /// A square skin, ten wavelengths wide, of irregular triangles with six edges per wavelength. Its film is stiffer than
-/// its base by the factor `stiffness_ratio`.
-inline Model film_model(double stiffness_ratio)
+/// its base by the factor `stiffness_ratio`. With `shear` triangles are sheared along x: 0.6 makes angles of 120
+/// degrees.
+inline Model film_model(double stiffness_ratio, double shear = 0)
 {
   Model model;
   model.spacing = { { 1e-4, 1e-4, 1e-4 } };
@@ -33,7 +34,10 @@ inline Model film_model(double stiffness_ratio)
   };
   for (std::int32_t j = 0; j <= n; ++j)
     for (std::int32_t i = 0; i <= n; ++i)
-      model.skin.vertices.push_back({ { edge * (i + shift(i)), edge * (j + shift(j)), 0 } });
+    {
+      const double y = edge * (j + shift(j));
+      model.skin.vertices.push_back({ { edge * (i + shift(i)) + shear * y, y, 0 } });
+    }
   for (std::int32_t j = 0; j < n; ++j)
     for (std::int32_t i = 0; i < n; ++i)
     {

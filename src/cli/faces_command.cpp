@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <iterator>
 #include <optional>
 
@@ -119,14 +120,20 @@ void measure_faces(FacesOptions& options)
   }
   progress.clear();
   fmt::print("{}", faces_table(rows, options.all_landmarks).text());
-  // What lacks expressions does not look like the whole.
-  const std::string part = interrupted ? ".part" : "";
+  // What lacks expressions does not replace the whole.
+  const auto named = [&](const std::string& path)
+  {
+    std::error_code code;
+    const bool special = std::filesystem::exists(path, code) && !std::filesystem::is_regular_file(path, code);
+    return interrupted && !special ? path + ".part" : path;
+  };
   if (!options.json.empty())
-    write_text(options.json + part, faces_table(rows, true).json());
+    write_text(named(options.json), faces_table(rows, true).json());
   if (!options.table.empty())
-    write_text(options.table + part, faces_table(rows, options.all_landmarks).markdown());
+    write_text(named(options.table), faces_table(rows, options.all_landmarks).markdown());
   if (!options.pictures.empty() && !pictures.empty())
-    write_contact_sheet(pictures, options.view, options.columns, options.pictures + "/faces");
+    write_contact_sheet(pictures, options.view, options.columns,
+                        options.pictures + (interrupted ? "/faces_part" : "/faces"));
   if (interrupted)
     throw Interrupted();
   const auto compared =
@@ -158,9 +165,11 @@ void add_faces_command(CLI::App& app)
   command->add_flag("--measure", options->measured_only, "only measure: faces unlike people's are no error");
   command->add_option("--json", options->json,
                       "write the figures of all landmarks to this file (FILE.part if interrupted)");
-  command->add_option("--table", options->table, "write the table to this file, as markdown");
+  command->add_option("--table", options->table,
+                      "write the table to this file, as markdown (FILE.part if interrupted)");
   CLI::Option* const pictures = command->add_option(
-      "--pictures", options->pictures, "write a contact sheet to faces.png in this folder (needs gnuplot)");
+      "--pictures", options->pictures,
+      "write a contact sheet to faces.png in this folder (faces_part.png if interrupted; needs gnuplot)");
   add_positive(*command, "--columns", options->columns, "of the contact sheet (6)")->needs(pictures);
   add_view_options(*command, pictures, options->view);
   add_solver_options(*command, options->settings.solver);

@@ -121,12 +121,13 @@ void Hdf5File::write(const std::string& path, const void* data, hsize_t rows, hs
   const Handle list(timeless(H5P_DATASET_CREATE), H5Pclose, "make a property list");
   if (rows > 0 && H5Tget_class(type) != H5T_STRING)
   {
-    // Numbers get checksums, for which they must be in chunks. Chunks of equal size hold little more than the array.
+    // Checksums need chunks; those of equal size hold little more than the array. Texts have none, because readers of
+    // models check what they name.
     constexpr hsize_t most_bytes = 1 << 20;
     const hsize_t chunks = 1 + rows * width * H5Tget_size(type) / most_bytes;
     const hsize_t chunk[2] = { (rows + chunks - 1) / chunks, width };
-    H5Pset_chunk(list, width == 1 ? 1 : 2, chunk);
-    H5Pset_fletcher32(list);
+    if (H5Pset_chunk(list, width == 1 ? 1 : 2, chunk) < 0 || H5Pset_fletcher32(list) < 0)
+      throw Error("HDF5: cannot give array " + path + " a checksum");
   }
   const Handle set(H5Dcreate2(file_, path.c_str(), type, space, H5P_DEFAULT, list, H5P_DEFAULT), H5Dclose,
                    "make array " + path);

@@ -265,6 +265,25 @@ TEST(Film, EachRegionHasLinesOfItsOwn)
   EXPECT_EQ(amplitude(model, half_height(stretched, true)), 0);
 }
 
+TEST(Film, IsInEquilibriumWithinTwoFrames)
+{
+  for (const double shear : { 0.0, 0.6 })
+  {
+    const Model model = film_model(100, shear);
+    FilmEquilibrium film(model, 0);
+    const Vertices skin = compressed(model, 1.6 * film_critical_strain(model.film.laws[0]));
+    const auto size = [](const std::vector<float>& height)
+    {
+      double sum = 0;
+      for (const float h : height)
+        sum += static_cast<double>(h) * h;
+      return std::sqrt(sum / static_cast<double>(height.size()));
+    };
+    const std::vector<float> soon = heights(film, skin, 2);
+    EXPECT_NEAR(size(soon) / size(heights(film, skin, 30, soon)), 1, 0.05) << "sheared by " << shear;
+  }
+}
+
 TEST(Film, IsTheSameInEveryRun)
 {
   const Model model = film_model(100);

@@ -25,6 +25,10 @@ TEST(MassFactors, nodes_with_little_tissue_get_the_mass_of_a_fifth_of_a_voxel_an
     EXPECT_NEAR(micrograms(plain, edge), 5, 1e-4) << "without scaled mass they keep their own";
   }
   model.mass_scaling.kind = MassScalingSettings::Kind::uniform;
+  {
+    const Discretisation unscaled(model);
+    EXPECT_NEAR(micrograms(unscaled, edge), 5, 1e-4) << "the factor 1 scales nothing";
+  }
   model.mass_scaling.factor = 4;
   const Discretisation scaled(model);
   EXPECT_NEAR(micrograms(scaled, edge), 4 * 200, 1e-3);

@@ -19,7 +19,7 @@ struct BonePose
   double angle = 0;          ///< angle of the bone's joint (Scene::joints) [rad]; replaces shift and turn
 };
 
-/// Orders names as text, but digits in them as numbers: AU2 is before AU12.
+/// Orders names as text, but digits in them as numbers (glibc's strverscmp()): AU2 is before AU12.
 struct NumbersInNames
 {
   bool operator()(const std::string& a, const std::string& b) const { return strverscmp(a.c_str(), b.c_str()) < 0; }

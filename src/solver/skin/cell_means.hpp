@@ -21,9 +21,9 @@ public:
   /// Indices of the vertices sorted by cell, so that neighbours are close to each other in memory. All functions below
   /// number the vertices in this order.
   const std::vector<std::int32_t>& order() const { return order_; }
-  /// Sets the area of each vertex [m2]. Call it before the following functions.
+  /// Sets the area of each vertex, in any unit. Call it before areas() and find_means().
   void set_areas(const Field& area);
-  /// Area that belongs to each corner of the cells [m2].
+  /// Area that belongs to each corner of the cells.
   const Field& areas() const { return area_; }
 
   const std::array<std::int32_t, 8>& corners(std::size_t vertex) const { return corner_[cell_[vertex]]; }

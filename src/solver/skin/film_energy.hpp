@@ -27,7 +27,7 @@ struct FilmEnergy
 
   /// Lowers the energy, until an iteration lowers it by little or the most iterations have been made, by conjugate
   /// gradients (Polak & Ribiere) with exact line search, preconditioned by the energy of bending and base. Returns the
-  /// number of iterations.
+  /// number of iterations, fewer than the most if the minimum was found.
   int minimise(Field& height, int most_iterations) const;
 
 private:

@@ -12,6 +12,8 @@ namespace
 
 // Heights are computed where the film's largest compression is at least this fraction of the critical strain.
 constexpr double near_critical = 0.5;
+// Larger heights, in thicknesses of the film, are no heights of lines.
+constexpr float highest = 1e3F;
 
 }  // namespace
 
@@ -44,8 +46,8 @@ void FilmEquilibrium::find_strain(const std::vector<std::array<float, 3>>& verti
 }
 
 // Finds the vertices where the film may have lines. Starts lines from the seed where heights are too small to grow or
-// not finite. Cells are passed over if a bound of the largest compression is small at all their corners: strains within
-// a cell are means of those at its corners, and the bound is a convex function of the strain.
+// no heights of lines. Cells are passed over if a bound of the largest compression is small at all their corners:
+// strains within a cell are means of those at its corners, and the bound is a convex function of the strain.
 void FilmEquilibrium::find_active(Field& w)
 {
   const auto poisson = static_cast<float>(law_.poisson), stretch = static_cast<float>(law_.stretch);
@@ -83,7 +85,7 @@ void FilmEquilibrium::find_active(Field& w)
             continue;
           }
           active_.push_back(static_cast<std::int32_t>(v));
-          if (!std::isfinite(w[v]) || (most > critical_ && std::abs(w[v]) < 0.1F * std::abs(seed_[v])))
+          if (!(std::abs(w[v]) < highest) || (most > critical_ && std::abs(w[v]) < 0.1F * std::abs(seed_[v])))
             w[v] = seed_[v];
         }
       });
@@ -100,7 +102,13 @@ void FilmEquilibrium::set_energy()
   const auto count = static_cast<std::int32_t>(active_.size());
   rank_.resize(order_.size(), -1);
   corner_rank_.resize(mean_strain_.size(), -1);
-  energy_ = {};
+  for (auto* const list : { &energy_.begin, &energy_.neighbour })
+    list->clear();
+  for (auto* const list :
+       { &energy_.laplace, &energy_.membrane, &energy_.area, &energy_.crease_force, &energy_.corner_area })
+    list->clear();
+  energy_.corner.clear();
+  energy_.weight.clear();
   energy_.begin.push_back(0);
   for (std::int32_t i = 0; i < count; ++i)
     rank_[active_[i]] = i;

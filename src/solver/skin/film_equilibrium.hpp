@@ -64,10 +64,11 @@ public:
   /// `law`: index in the film's laws, whose region this is. The model must outlive this object.
   FilmEquilibrium(const Model& model, std::size_t law);
 
-  static constexpr int most_iterations = 14;
+  static constexpr int most_iterations = 16;
 
   /// Improves `height` ([m], one per vertex of the skin; empty: flat) in the region until the film is in equilibrium or
-  /// most_iterations have been made. Returns the number of iterations. `vertices`: those of the skin without lines [m].
+  /// most_iterations have been made. Returns the number of iterations, fewer than that in equilibrium. `vertices`:
+  /// those of the skin without lines [m].
   int solve(const std::vector<std::array<float, 3>>& vertices, std::vector<float>& height);
 
 private:

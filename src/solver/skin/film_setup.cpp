@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 
 namespace frontalis
 {
@@ -58,8 +57,7 @@ FilmEquilibrium::FilmEquilibrium(const Model& model, std::size_t law, std::vecto
       critical_(film_critical_strain(law_)),
       k_(2 * physics::pi / film_wavelength(law_)),
       cells_(places_of(model, region),
-             std::max(2 * physics::pi / k_, *std::max_element(model.spacing.begin(), model.spacing.end()))),
-      strain_(region.size())
+             std::max(2 * physics::pi / k_, *std::max_element(model.spacing.begin(), model.spacing.end())))
 {
   for (const std::int32_t v : cells_.order())
     order_.push_back(region[v]);
@@ -158,17 +156,19 @@ void FilmEquilibrium::make_operators()
 void FilmEquilibrium::make_seed()
 {
   constexpr int waves = 64;
+  Point along[waves];
+  for (int i = 0; i < waves; ++i)
+  {
+    // The directions of the waves are spread evenly over a sphere.
+    const double z = 1 - (2 * i + 1.0) / waves, turn = physics::pi * (3 - std::sqrt(5.0)) * i, r = std::sqrt(1 - z * z);
+    along[i] = { r * std::cos(turn), r * std::sin(turn), z };
+  }
   for (std::size_t v = 0; v < order_.size(); ++v)
   {
     const Point at = vector_of(model_.skin.vertices[order_[v]]);
     double sum = 0;
     for (int i = 0; i < waves; ++i)
-    {
-      // The directions of the waves are spread evenly over a sphere.
-      const double z = 1 - (2 * i + 1.0) / waves, turn = physics::pi * (3 - std::sqrt(5.0)) * i,
-                   r = std::sqrt(1 - z * z);
-      sum += std::cos(k_ * (r * std::cos(turn) * at.x + r * std::sin(turn) * at.y + z * at.z) + i * i);
-    }
+      sum += std::cos(k_ * dot(along[i], at) + i * i);
     seed_[v] = static_cast<float>(seed_height * sum / std::sqrt(0.5 * waves));
   }
 }
@@ -180,9 +180,10 @@ void FilmEquilibrium::make_creases()
     crease_[v] = model_.film.crease[order_[v]] / static_cast<float>(law_.thickness);
   Field curvature(order_.size());
   laplacian(crease_, curvature);
-  // Where creases end their slope jumps. Vertices beyond, whose heights were 0, have no part in their energy.
+  // The film has no energy at vertices without heights, such as those of its border. Nor must creases have, whose slope
+  // ends there: it would make a line.
   for (std::size_t v = 0; v < curvature.size(); ++v)
-    curvature[v] = crease_[v] != 0 && area_[v] > 0 ? curvature[v] / area_[v] : 0;
+    curvature[v] = resolved_[v] && crease_[v] != 0 && area_[v] > 0 ? curvature[v] / area_[v] : 0;
   laplacian(curvature, crease_force_);
 }
 
