@@ -119,10 +119,9 @@ void Hdf5File::write(const std::string& path, const void* data, hsize_t rows, hs
   const hsize_t shape[2] = { rows, width };
   const Handle space(H5Screate_simple(width == 1 ? 1 : 2, shape, nullptr), H5Sclose, "make the shape of " + path);
   const Handle list(timeless(H5P_DATASET_CREATE), H5Pclose, "make a property list");
-  if (rows > 0 && H5Tget_class(type) != H5T_STRING)
+  if (rows > 0)
   {
-    // Checksums need chunks; those of equal size hold little more than the array. Texts have none, because readers of
-    // models check what they name.
+    // Checksums need chunks; those of equal size hold little more than the array.
     constexpr hsize_t most_bytes = 1 << 20;
     const hsize_t chunks = 1 + rows * width * H5Tget_size(type) / most_bytes;
     const hsize_t chunk[2] = { (rows + chunks - 1) / chunks, width };

@@ -4,6 +4,7 @@
 #include "model/model_block.hpp"
 
 #include <gtest/gtest.h>
+#include <hdf5.h>
 #include <sys/stat.h>
 
 #include <filesystem>
@@ -183,16 +184,21 @@ TEST_F(ModelFile, ADamagedValueIsFound)
   const float fill[] = { 0.8125F, 0.4375F, 0.3125F };
   std::copy(std::begin(fill), std::end(fill), model.fill.begin());
   write_model(model, path("a.vtkhdf"));
-  std::string content = text_of(path("a.vtkhdf"));
-  // The arrays for ParaView have the same numbers.
-  const std::string bytes(reinterpret_cast<const char*>(fill), sizeof fill);
-  std::size_t found = 0;
-  for (std::size_t at = content.find(bytes); at != std::string::npos; at = content.find(bytes, at + 1), ++found)
-    content[at + 1] ^= 4;
-  ASSERT_GT(found, 0u);
-  std::ofstream(path("b.vtkhdf"), std::ios::binary) << content;
-  const std::string fault = fault_of(path("b.vtkhdf"));
-  EXPECT_NE(fault.find("fill cannot be read; the file is truncated or damaged"), std::string::npos) << fault;
+  const std::string numbers(reinterpret_cast<const char*>(fill), sizeof fill);
+  for (const auto& [array, bytes] :
+       { std::pair{ "fill", numbers }, std::pair{ "materials/name", model.materials[1].name } })
+  {
+    std::string content = text_of(path("a.vtkhdf"));
+    // The arrays for ParaView have the same numbers.
+    std::size_t found = 0;
+    for (std::size_t at = content.find(bytes); at != std::string::npos; at = content.find(bytes, at + 1), ++found)
+      content[at + 1] ^= 4;
+    ASSERT_GT(found, 0u);
+    std::ofstream(path("b.vtkhdf"), std::ios::binary) << content;
+    const std::string fault = fault_of(path("b.vtkhdf"));
+    EXPECT_NE(fault.find(std::string(array) + " cannot be read; the file is truncated or damaged"), std::string::npos)
+        << fault;
+  }
 }
 
 TEST_F(ModelFile, AnotherVersionIsRefusedWithBothNumbers)
@@ -232,14 +238,18 @@ TEST_F(ModelFile, AnotherSceneOrPackageIsRefusedWhereOneIsAskedFor)
   const std::string other = fault("fedcba9876543210");
   EXPECT_NE(other.find("is of another scene"), std::string::npos) << other;
   EXPECT_NE(other.find("fedcba9876543210"), std::string::npos) << other;
-  // The file contains the version of the package as text. Its first digit is changed.
-  std::string content = text_of(path("a.vtkhdf"));
   const Model again = read_model(path("a.vtkhdf"));
   EXPECT_EQ(again.scene_hash, model.scene_hash);
-  const std::size_t version = content.find(FRONTALIS_VERSION);
-  ASSERT_NE(version, std::string::npos);
-  content[version] = '9';
-  std::ofstream(path("a.vtkhdf"), std::ios::binary) << content;
+  // The file contains the version of the package as text. Its first digit is changed.
+  std::string version = FRONTALIS_VERSION;
+  version[0] = '9';
+  const hid_t file = H5Fopen(path("a.vtkhdf").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  const hid_t text = H5Dopen2(file, "/frontalis/package_version", H5P_DEFAULT), type = H5Dget_type(text);
+  ASSERT_EQ(H5Tget_size(type), version.size());
+  EXPECT_GE(H5Dwrite(text, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, version.data()), 0);
+  H5Tclose(type);
+  H5Dclose(text);
+  H5Fclose(file);
   const std::string foreign = fault("0123456789abcdef");
   EXPECT_NE(foreign.find("was baked by version 9"), std::string::npos) << foreign;
 }
