@@ -31,8 +31,12 @@ inline ContactBody contact_body(const Contact& contact, const physics::DistanceF
   return body;
 }
 
-/// Appends a pose in the form of BodyPose (cuda/kernels/bone_pose.cuh): three rows, each with a component of the shift.
-inline void add_pose(const RigidTransform& pose, const double (&middle)[3], std::vector<float>& to)
+/// Numbers of floats of a pose, and of a bone's pose with its motion.
+constexpr std::size_t pose_entries = 12, bone_motion_entries = 24;
+
+/// Writes a pose in the form of BodyPose (cuda/kernels/bone_pose.cuh): three rows, each with a component of the shift.
+/// Returns the end of what it has written, as the next function does.
+inline float* put_pose(const RigidTransform& pose, const double (&middle)[3], float* to)
 {
   for (std::size_t i = 0; i < 3; ++i)
   {
@@ -40,31 +44,33 @@ inline void add_pose(const RigidTransform& pose, const double (&middle)[3], std:
     for (std::size_t j = 0; j < 3; ++j)
     {
       const double turn = pose.rotation[3 * j + i];
-      to.push_back(static_cast<float>(turn - (i == j ? 1 : 0)));
+      *to++ = static_cast<float>(turn - (i == j ? 1 : 0));
       shift += turn * (middle[j] - pose.translation[j]);
     }
-    to.push_back(static_cast<float>(shift));
+    *to++ = static_cast<float>(shift);
   }
+  return to;
 }
 
 /// Appends the pose of a body (ContactArguments::poses).
 inline void add_pose(const ContactBody& body, const std::vector<RigidTransform>& bones, std::vector<float>& to)
 {
-  add_pose(body.bone < 0 ? RigidTransform() : bones[body.bone], body.middle, to);
+  to.resize(to.size() + pose_entries);
+  put_pose(body.bone < 0 ? RigidTransform() : bones[body.bone], body.middle, &to.back() + 1 - pose_entries);
 }
 
-/// Appends a bone's pose after a step, and its motion in the step (StepArguments::bone_motions). `rate`: 1 over the
+/// Writes a bone's pose after a step, and its motion in the step (StepArguments::bone_motions). `rate`: 1 over the
 /// length of the step [1/s].
-inline void add_bone_motion(const RigidTransform& before, const RigidTransform& after, double rate,
-                            std::vector<float>& to)
+inline float* put_bone_motion(const RigidTransform& before, const RigidTransform& after, double rate, float* to)
 {
-  add_pose(after, { 0, 0, 0 }, to);
+  to = put_pose(after, { 0, 0, 0 }, to);
   for (std::size_t i = 0; i < 3; ++i)
   {
     for (std::size_t j = 3 * i; j < 3 * i + 3; ++j)
-      to.push_back(static_cast<float>(rate * (after.rotation[j] - before.rotation[j])));
-    to.push_back(static_cast<float>(rate * (after.translation[i] - before.translation[i])));
+      *to++ = static_cast<float>(rate * (after.rotation[j] - before.rotation[j]));
+    *to++ = static_cast<float>(rate * (after.translation[i] - before.translation[i]));
   }
+  return to;
 }
 
 /// A point in the form that the device needs.

@@ -206,8 +206,9 @@ void CudaSolver::skin(SkinState& out)
     place_film_vertices(*model_, out);
 }
 
-// Plans of 0.5 ms are long enough to hide the host's work between them, and short enough for the time step to follow
-// tissue that stiffens. The guard's checks and dynamic relaxation have to wait for the device and are therefore rare.
+// Plans of 64 steps, or of 0.5 ms with short steps, are long enough to hide the host's work between them, and short
+// enough for the time step to follow tissue that stiffens. The guard's checks and dynamic relaxation have to wait for
+// the device and are therefore rare.
 BackendTraits CudaSolver::traits() const
 {
   cudaDeviceProp device{};
@@ -218,8 +219,8 @@ BackendTraits CudaSolver::traits() const
   BackendTraits traits;
   traits.description = fmt::format("cuda (float, {}, {}{})", device.name, cut, remark_);
   traits.seconds_per_plan = 0.5e-3;
-  traits.fewest_steps_per_plan = 32;
-  traits.most_steps_per_plan = 128;
+  traits.fewest_steps_per_plan = 64;
+  traits.most_steps_per_plan = most_steps_per_plan;
   traits.steps_per_observation = model_->nodes.size() > 1000000 ? 2048 : 512;
   traits.steps_per_check = 2048;
   return traits;

@@ -41,7 +41,7 @@ public:
   void restore(const BackendState& from) override;
   void internal_forces(NodalVectors& out) override;
   double highest_frequency_squared() override;
-  void measure_growth(double found) override;
+  void measure_growth(double found, bool keeps) override;
   std::vector<FoundMode> modes_above(double frequency_squared) override;
   void masses_changed(const std::vector<std::int32_t>& nodes) override;
   Monitor monitor() override;
@@ -53,7 +53,7 @@ public:
   void skin(SkinState& out) override;
 
 private:
-  static constexpr int plan_slots = 3, plan_measures = 2;
+  static constexpr int plan_slots = 3, plan_measures = 2, most_steps_per_plan = 128;
 
   StepArguments arguments(double dt, bool idle_parts = false) const;
   void kick(StepArguments& g, double seconds) const;

@@ -48,11 +48,12 @@ void CudaSolver::stage(const StepPlan& plan, const std::vector<float>& relaxatio
   const auto running = device_.running_parts();
   std::vector<std::vector<RigidTransform>> poses;
   for (int step = 0; (bones > 0 || !running.empty()) && step <= plan.steps; ++step)
-    poses.push_back(step == 0 ? plan.begin.bone : plan.constraint_step(step - 1).bone);
-  std::vector<float> motions, bodies;
+    poses.push_back(step == 0 ? plan.begin.bone : plan.bones(step - 1));
+  std::vector<float> motions(poses.size() * bones * bone_motion_entries), bodies;
+  float* motion = motions.data();
   for (std::size_t step = 0; step < poses.size(); ++step)
     for (std::size_t bone = 0; bone < bones; ++bone)
-      add_bone_motion(poses[step == 0 ? 0 : step - 1][bone], poses[step][bone], 1 / plan.dt, motions);
+      motion = put_bone_motion(poses[step == 0 ? 0 : step - 1][bone], poses[step][bone], 1 / plan.dt, motion);
   for (const DevicePart* const part : running)
     if (bodies.empty())
       bodies = part->motion(poses);
@@ -64,8 +65,10 @@ void CudaSolver::stage(const StepPlan& plan, const std::vector<float>& relaxatio
   const std::size_t bytes = relaxation_at + sizeof(float) * relaxation.size();
   if (bytes > slot.staged.size())
   {
-    slot.staged = PinnedArray<char>(bytes);
-    slot.controls = DeviceArray<char>(bytes);
+    // Room for a long plan, because each allocation takes as long as a hundred steps.
+    const std::size_t room = bytes * std::max(1, most_steps_per_plan / plan.steps);
+    slot.staged = PinnedArray<char>(room);
+    slot.controls = DeviceArray<char>(room);
   }
   char* const staged = slot.staged.data();
   std::memset(staged, 0, motions_at);

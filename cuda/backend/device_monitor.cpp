@@ -44,11 +44,10 @@ Monitor DeviceMonitor::read(const StepArguments& g, const float4* u, cudaStream_
   return monitor_of(sum, double(stiffest.frequency_squared), stiffest.voxel);
 }
 
-void DeviceMonitor::limit_mobility(const StepArguments& g, const float4* u, const float* inverse_masses, float found,
+void DeviceMonitor::limit_mobility(const StepArguments& g, const float4* u, const float* most, float found,
                                    float* mobility, cudaStream_t stream)
 {
-  require(launch_limit_mobility(g, view_, u, parts_.data(), inverse_masses, found, mobility, stream),
-          "measuring growth");
+  require(launch_limit_mobility(g, view_, u, parts_.data(), most, found, mobility, stream), "measuring growth");
 }
 
 }  // namespace cuda

@@ -17,9 +17,9 @@ public:
 
   /// Returns energies and worst voxel at displacements `u` and velocities g.v. Waits for the stream.
   Monitor read(const StepArguments& g, const float4* u, cudaStream_t stream);
-  /// Limits the mobility of device nodes as StepBackend::measure_growth() says, from inverse masses.
-  void limit_mobility(const StepArguments& g, const float4* u, const float* inverse_masses, float found,
-                      float* mobility, cudaStream_t stream);
+  /// Limits the mobility of device nodes as StepBackend::measure_growth() says. `most`: the largest that it may become.
+  void limit_mobility(const StepArguments& g, const float4* u, const float* most, float found, float* mobility,
+                      cudaStream_t stream);
   /// Bytes of device memory.
   std::size_t bytes() const
   {

@@ -189,9 +189,10 @@ void CudaSolver::list_shares(const std::vector<double>& mode, uint2* list)
   require(launch_list_shares(g, stream_), "listing a mode");
 }
 
-void CudaSolver::measure_growth(double found)
+void CudaSolver::measure_growth(double found, bool keeps)
 {
-  device_monitor().limit_mobility(arguments(0), u_[present_].data(), device_.inverse_bound_masses(),
+  device_monitor().limit_mobility(arguments(0), u_[present_].data(),
+                                  keeps ? device_.limited_mobility() : device_.inverse_bound_masses(),
                                   static_cast<float>(found), device_.limited_mobility(), stream_);
   // Earlier plans measured growth since another search.
   plans_ = 0;

@@ -118,12 +118,12 @@ __global__ void __launch_bounds__(block)
     parts[blockIdx.x] = found[0];
 }
 
-__global__ void __launch_bounds__(block) limit_mobility(const __grid_constant__ MonitorVoxels voxels,
-                                                        const float* inverse_masses, float found, float* mobility)
+__global__ void __launch_bounds__(block)
+    limit_mobility(const __grid_constant__ MonitorVoxels voxels, const float* most, float found, float* mobility)
 {
-  // fminf returns the inverse mass if the other number is NaN.
+  // fminf returns `most` if the other number is NaN.
   for (std::uint32_t n = blockIdx.x * block + threadIdx.x; n < voxels.nodes; n += gridDim.x * block)
-    mobility[n] = fminf(inverse_masses[n], found / voxels.node_stiffness[n]);
+    mobility[n] = fminf(most[n], found / voxels.node_stiffness[n]);
 }
 
 // The bits of floats that are not negative are in the order of the floats; those of NaN are the largest.
@@ -170,11 +170,11 @@ cudaError_t launch_monitor(const StepArguments& arguments, const MonitorVoxels& 
 }
 
 cudaError_t launch_limit_mobility(const StepArguments& arguments, const MonitorVoxels& voxels, const float4* u,
-                                  PlaneMonitor* parts, const float* inverse_masses, float found, float* mobility,
+                                  PlaneMonitor* parts, const float* most, float found, float* mobility,
                                   cudaStream_t stream)
 {
   add_up_voxels(arguments, voxels, u, parts, stream);
-  cuda::limit_mobility<<<monitor_blocks, cuda::block, 0, stream>>>(voxels, inverse_masses, found, mobility);
+  cuda::limit_mobility<<<monitor_blocks, cuda::block, 0, stream>>>(voxels, most, found, mobility);
   return cudaGetLastError();
 }
 

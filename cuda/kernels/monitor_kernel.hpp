@@ -49,10 +49,10 @@ constexpr int monitor_blocks = 264;
 cudaError_t launch_monitor(const StepArguments& arguments, const MonitorVoxels& voxels, const float4* u,
                            PlaneMonitor* parts, StiffestVoxel* stiffest, cudaStream_t stream);
 
-/// Writes the smaller of each node's inverse mass and `found` [1/s2] over the sum of the bounds of its voxels at `u`
-/// [N/m] to `mobility`.
+/// Writes the smaller of each node's `most` [1/kg] and `found` [1/s2] over the sum of the bounds of its voxels at `u`
+/// [N/m] to `mobility`, which may be the same memory.
 cudaError_t launch_limit_mobility(const StepArguments& arguments, const MonitorVoxels& voxels, const float4* u,
-                                  PlaneMonitor* parts, const float* inverse_masses, float found, float* mobility,
+                                  PlaneMonitor* parts, const float* most, float found, float* mobility,
                                   cudaStream_t stream);
 
 /// Writes the bits of the largest speed of device nodes [m/s] to `bits`, which must be 0 before. `nodes`: their number,

@@ -108,9 +108,9 @@ struct Device
 
   void step(int number)
   {
-    std::vector<float> motions;
+    std::vector<float> motions(2 * bone_motion_entries);
     for (int s = 0; s < 2; ++s)
-      add_bone_motion(pose(std::max(0, number + s - 1)), pose(number + s), 1 / dt, motions);
+      put_bone_motion(pose(std::max(0, number + s - 1)), pose(number + s), 1 / dt, &motions[s * bone_motion_entries]);
     std::vector<float4> words(motions.size() / 4);
     std::memcpy(words.data(), motions.data(), motions.size() * sizeof(float));
     g.bone_motions = words.data();

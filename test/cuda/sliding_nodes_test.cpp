@@ -73,9 +73,9 @@ public:
   void turn(double rate)
   {
     rate_ = rate;
-    std::vector<float> motions;
+    std::vector<float> motions((steps + 1) * bone_motion_entries);
     for (int step = 0; step <= steps; ++step)
-      add_bone_motion(pose(std::max(step - 1, 0)), pose(step), 1 / dt, motions);
+      put_bone_motion(pose(std::max(step - 1, 0)), pose(step), 1 / dt, &motions[step * bone_motion_entries]);
     motions_.resize(motions.size() / 4);
     std::memcpy(motions_.data(), motions.data(), motions.size() * sizeof(float));
     g_.bone_motions = motions_.data();

@@ -19,15 +19,15 @@ struct Search
   float activation = -1;  // of the latest search
   bool moving = false;
 
-  void renew(AssembledEstimate& estimate, float present, double measured = 0)
+  AssembledEstimate::Renewal renew(AssembledEstimate& estimate, float present, double measured = 0)
   {
-    estimate.renew({ present }, moving, measured, bound,
-                   [this](const std::vector<float>& at)
-                   {
-                     ++searches;
-                     activation = at[0];
-                     return found;
-                   });
+    return estimate.renew({ present }, moving, measured, bound,
+                          [this](const std::vector<float>& at)
+                          {
+                            ++searches;
+                            activation = at[0];
+                            return found;
+                          });
   }
   // The number of steps until the next search, in plans of 10 steps.
   int steps_until_next(AssembledEstimate& estimate, float present, double measured = 0)
@@ -106,6 +106,44 @@ TEST(AssembledEstimate, is_found_again_when_growth_has_cost_as_many_steps_as_a_s
       << "0.467 of each step is lost; the search follows the plan that exceeds 20";
   EXPECT_EQ(search.steps_until_next(estimate, 0, 1.43 * soft), 190) << "0.109 of each";
   EXPECT_EQ(search.steps_until_next(estimate, 0, 1.15 * soft), 300) << "0.006 of each";
+}
+
+TEST(AssembledEstimate, is_confirmed_by_a_search_that_finds_the_same)
+{
+  const auto after = [](double found, bool moving, float present, double measured)
+  {
+    AssembledEstimate estimate;
+    Search search;
+    search.renew(estimate, 0);
+    EXPECT_FALSE(search.renew(estimate, 0).searched);
+    estimate.steps_taken(300, estimate.covered(measured));
+    search.found = found;
+    search.moving = moving;
+    const auto renewal = search.renew(estimate, present, measured);
+    EXPECT_TRUE(renewal.searched);
+    return renewal.confirmed;
+  };
+  EXPECT_TRUE(after(1.02 * soft, false, 0, 0));
+  EXPECT_TRUE(after(1.02 * soft, false, 0, 4 * soft)) << "whatever was measured";
+  EXPECT_FALSE(after(1.04 * soft, false, 0, 0));
+  EXPECT_FALSE(after(soft, true, 0, 0));
+  EXPECT_FALSE(after(soft, false, 0.1F, 0));
+  EXPECT_FALSE(after(0, false, 0, 0));
+}
+
+TEST(AssembledEstimate, remains_that_of_a_steady_model_if_growth_is_not_confirmed)
+{
+  AssembledEstimate estimate;
+  Search search;
+  search.renew(estimate, 0);
+  EXPECT_EQ(search.steps_until_next(estimate, 0), 300);
+  EXPECT_LT(search.steps_until_next(estimate, 0, 1.43 * soft), 300);
+  EXPECT_DOUBLE_EQ(estimate.covered(0), 1.1 * soft);
+  EXPECT_FALSE(estimate.in_motion());
+  search.found = 1.43 * soft;
+  EXPECT_LT(search.steps_until_next(estimate, 0, 1.43 * soft), 300);
+  EXPECT_DOUBLE_EQ(estimate.covered(0), 1.25 * 1.43 * soft);
+  EXPECT_TRUE(estimate.in_motion());
 }
 
 TEST(AssembledEstimate, is_found_at_equal_times_while_steps_are_long)

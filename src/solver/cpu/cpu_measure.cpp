@@ -11,7 +11,7 @@ namespace frontalis
 // Computes the monitor and, if `found` is not 0, what measure_growth() does with it. Each thread processes its slab;
 // the sums of the planes are then added in order.
 template <class Real>
-Monitor CpuSolver<Real>::examine(double found)
+Monitor CpuSolver<Real>::examine(double found, bool keeps)
 {
   const Arguments from = arguments(0, nullptr);
   CpuKernelArguments<double> g{};
@@ -61,7 +61,7 @@ Monitor CpuSolver<Real>::examine(double found)
         bounds[t] = bound_of_nodes(discretisation_, *model_, stiffness.data(),
                                    { first_voxel(first - 1), first_voxel(last) }, nodes, mobility_, wide_[0].data());
         if (found > 0)
-          limit_mobility(discretisation_, nodes, wide_[0].data(), found, mobility_);
+          limit_mobility(discretisation_, nodes, wide_[0].data(), found, keeps, mobility_);
       });
   PlaneMonitor sum;
   for (const PlaneMonitor& plane : planes)
@@ -72,7 +72,7 @@ Monitor CpuSolver<Real>::examine(double found)
   return monitor_of(sum, bound.frequency_squared, stiffest_voxel_at(*model_, bound.node, stiffness.data()));
 }
 
-template Monitor CpuSolver<float>::examine(double found);
-template Monitor CpuSolver<double>::examine(double found);
+template Monitor CpuSolver<float>::examine(double found, bool keeps);
+template Monitor CpuSolver<double>::examine(double found, bool keeps);
 
 }  // namespace frontalis

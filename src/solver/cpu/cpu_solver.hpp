@@ -28,8 +28,8 @@ public:
   PlanMeasures run(const StepPlan& plan) override;
   void effects_switched() override;
   void masses_changed(const std::vector<std::int32_t>& nodes) override;
-  Monitor monitor() override { return examine(0); }
-  void measure_growth(double found) override { examine(found); }
+  Monitor monitor() override { return examine(0, false); }
+  void measure_growth(double found, bool keeps) override { examine(found, keeps); }
   Work work(bool open) override;
 
 private:
@@ -47,7 +47,7 @@ private:
   const Components& found_forces() const override { return next_; }
   void share_planes();
   Arguments arguments(double dt, const float* activation);
-  Monitor examine(double found);
+  Monitor examine(double found, bool keeps);
   void kick(Arguments& g, double seconds) const;
   void choose_passive();
 

@@ -85,7 +85,7 @@ Monitor ReferenceSolver::monitor()
   return monitor_voxels(*model_, discretisation_, u, v, mobility_);
 }
 
-void ReferenceSolver::measure_growth(double found)
+void ReferenceSolver::measure_growth(double found, bool keeps)
 {
   const NodeShare share = all_nodes();
   find_forces(share, u_);
@@ -93,7 +93,7 @@ void ReferenceSolver::measure_growth(double found)
   const IndexRange nodes{ 0, share.end_node };
   bound_of_nodes(discretisation_, *model_, stiffness_.data(), { 0, static_cast<std::int32_t>(stiffness_.size()) },
                  nodes, mobility_, sum.data());
-  limit_mobility(discretisation_, nodes, sum.data(), found, mobility_);
+  limit_mobility(discretisation_, nodes, sum.data(), found, keeps, mobility_);
 }
 
 Work ReferenceSolver::work(bool open)

@@ -21,7 +21,7 @@ public:
   PlanMeasures run(const StepPlan& plan) override;
   void effects_switched() override;
   Monitor monitor() override;
-  void measure_growth(double found) override;
+  void measure_growth(double found, bool keeps) override;
   Work work(bool open) override;
 
 private:

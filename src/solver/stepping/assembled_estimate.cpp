@@ -48,8 +48,8 @@ void AssembledEstimate::steps_taken(int steps, double covered)
     steps_lost_ += steps * (1 - std::sqrt(found_ / covered));
 }
 
-bool AssembledEstimate::renew(const std::vector<float>& activation, bool moving, double measured, double most,
-                              const Search& search)
+AssembledEstimate::Renewal AssembledEstimate::renew(const std::vector<float>& activation, bool moving, double measured,
+                                                    double most, const Search& search)
 {
   activation_.resize(activation.size());
   bool activated = false;
@@ -59,19 +59,19 @@ bool AssembledEstimate::renew(const std::vector<float>& activation, bool moving,
     steps_valid_ = std::min(steps_valid_, steps_in_motion(found_));
   const bool grown = known() && steps_lost_ > search_cost;
   if (known() && !activated && !grown && steps_ < steps_valid_)
-    return false;
+    return {};
   // A search after growth keeps the activations, because they may be on their way to those.
   const float ahead = activated ? activation_ahead : activation_tolerance;
   for (std::size_t m = 0; m < activation.size() && (activated || !grown); ++m)
     activation_[m] = activation[m] > 0 ? std::min(1.0F, activation[m] + ahead) : 0;
   const double squared = search(activation_), least = slowest_fall * found_;
-  const bool changes = !known() || activated || moving || grown;
-  const bool steady = !changes && covered(measured) <= (1 + steady_change) * found_ &&
-                      std::abs(squared - latest_) <= steady_change * latest_;
+  const bool confirmed =
+      known() && !activated && !moving && squared > 0 && std::abs(squared - latest_) <= steady_change * latest_;
+  const bool steady = confirmed && (grown || covered(measured) <= (1 + steady_change) * found_);
   latest_ = squared;
-  if (changes)
+  if (!known() || activated || moving || (grown && !confirmed))
     steps_valid_ = steps_in_motion(squared);
-  else
+  else if (!grown)
     steps_valid_ = steady ? longest_valid : std::min(2 * steps_valid_, longest_valid);
   const double allowance = steps_valid_ < longest_valid ? margin_in_motion : frequency_margin;
   found_ = squared > 0 && std::isfinite(squared) ? allowance * squared : most;
@@ -83,7 +83,7 @@ bool AssembledEstimate::renew(const std::vector<float>& activation, bool moving,
   softest_ = softest_ > 0 ? std::min(softest_, found_) : found_;
   steps_ = 0;
   steps_lost_ = 0;
-  return true;
+  return { true, confirmed };
 }
 
 void AssembledEstimate::discard() { found_ = softest_ = 0; }

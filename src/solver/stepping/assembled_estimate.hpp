@@ -23,6 +23,13 @@ public:
   static constexpr double margin_in_motion = 1.25;
   /// Squared highest frequency at given activations.
   using Search = std::function<double(const std::vector<float>& activation)>;
+  struct Renewal
+  {
+    bool searched = false;
+    /// Whether the search found what the one before had found, in a model that nothing moves. What was measured since
+    /// then therefore was not growth of the highest frequency, however much it was.
+    bool confirmed = false;
+  };
 
   bool known() const { return found_ > 0; }
   /// What the latest search found, with its margin, or what backends measure since, with a tenth for what the search
@@ -36,10 +43,10 @@ public:
   std::int64_t steps_left() const { return std::max<std::int64_t>(steps_valid_ - steps_, 1); }
   /// Counts steps that were at most as long as `covered` allowed [1/s2].
   void steps_taken(int steps, double covered);
-  /// Searches if this is due, and says whether it did. `activation`: the largest activations until the next call.
-  /// `moving`: whether bones move, so that tissue stiffens where no muscle acts. `measured`: at present. `most`: bound
-  /// at rest, the estimate if the search finds no number.
-  bool renew(const std::vector<float>& activation, bool moving, double measured, double most, const Search& search);
+  /// Searches if this is due. `activation`: the largest activations until the next call. `moving`: whether bones move,
+  /// so that tissue stiffens where no muscle acts. `measured`: at present. `most`: bound at rest, the estimate if the
+  /// search finds no number.
+  Renewal renew(const std::vector<float>& activation, bool moving, double measured, double most, const Search& search);
   /// Forgets what was found. Call it when displacements were set from outside.
   void discard();
   void archive(ByteArchive& archive)

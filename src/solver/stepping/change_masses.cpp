@@ -18,7 +18,11 @@ constexpr double search_again = 1.35;
 double TimeStepper::search_frequency(const std::vector<float>& activation)
 {
   conditions_.activation = effects_.felt(activation);
-  masses_changed(mass_in_motion_.fade(discretisation_.node_mass, motion_.added));
+  if (const auto faded = mass_in_motion_.fade(discretisation_.node_mass, motion_.added); !faded.empty())
+  {
+    masses_changed(faded);
+    backend_->measure_growth(std::numeric_limits<double>::infinity(), false);
+  }
   double squared = backend_->highest_frequency_squared();
   for (int round = 0; round < 2 && mass_in_motion_.limits(squared, motion_.added); ++round)
   {
@@ -29,7 +33,6 @@ double TimeStepper::search_frequency(const std::vector<float>& activation)
       break;
     squared = backend_->highest_frequency_squared();
   }
-  backend_->measure_growth(squared > 0 && std::isfinite(squared) ? squared : std::numeric_limits<double>::infinity());
   return squared;
 }
 

@@ -87,8 +87,9 @@ public:
   virtual double highest_frequency_squared() = 0;
   /// From now on, plans and monitor() measure how much the model can have stiffened since the present displacements: a
   /// node's bound counts times found / (its bound now), where that is below 1, until displacements are set. `found`:
-  /// the squared highest frequency [1/s2], or infinity, which ends this. Called in assembled models only.
-  virtual void measure_growth(double found) = 0;
+  /// the squared highest frequency [1/s2], or infinity, which ends this. `keeps`: whether a smaller factor of earlier
+  /// calls remains. Called in assembled models only.
+  virtual void measure_growth(double found, bool keeps) = 0;
   /// The modes above a squared frequency [1/s2] that the latest search met. Called only if
   /// MassScalingSettings::in_motion is set.
   virtual std::vector<FoundMode> modes_above(double frequency_squared) = 0;

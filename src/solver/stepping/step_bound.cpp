@@ -72,13 +72,13 @@ std::vector<float> mobility(const Discretisation& discretisation)
   return result;
 }
 
-void limit_mobility(const Discretisation& discretisation, IndexRange nodes, const double* sum, double found,
+void limit_mobility(const Discretisation& discretisation, IndexRange nodes, const double* sum, double found, bool keeps,
                     std::vector<float>& mobility)
 {
   const std::vector<double>& mass = masses_for_bound(discretisation);
   for (auto n = nodes.first; n < nodes.last; ++n)
-    if (const double limit = found / sum[n]; mobility[n] > 0)
-      mobility[n] = static_cast<float>(limit > 0 ? std::min(1 / mass[n], limit) : 1 / mass[n]);
+    if (const double limit = found / sum[n], most = keeps ? mobility[n] : 1 / mass[n]; mobility[n] > 0)
+      mobility[n] = static_cast<float>(limit > 0 ? std::min(most, limit) : most);
 }
 
 }  // namespace frontalis

@@ -42,7 +42,7 @@ std::vector<float> mobility(const Discretisation& discretisation);
 
 /// Changes the mobility of some nodes so that their bound is at most `found` [1/s2] now and grows in proportion to the
 /// stiffness of their voxels (StepBackend::measure_growth). `sum`: as found by bound_of_nodes().
-void limit_mobility(const Discretisation& discretisation, IndexRange nodes, const double* sum, double found,
+void limit_mobility(const Discretisation& discretisation, IndexRange nodes, const double* sum, double found, bool keeps,
                     std::vector<float>& mobility);
 
 }  // namespace frontalis

@@ -47,14 +47,17 @@ struct StepPlan
     for (std::size_t m = 0; m < begin.activation.size(); ++m)
       out[m] = begin.activation[m] + f * (end.activation[m] - begin.activation[m]);
   }
+  /// Poses of the bones at the end of a step; those at the start of the plan for step -1.
+  std::vector<RigidTransform> bones(int step) const
+  {
+    std::vector<RigidTransform> at = end.bone;
+    for (std::size_t b = 0; b < at.size(); ++b)
+      at[b] = interpolate(begin.bone[b], end.bone[b], fraction(step));
+    return at;
+  }
   ConstraintStep constraint_step(int step) const
   {
-    ConstraintStep now{ time + (step + 1) * dt, dt, time + step * dt, {}, {}, {}, step };
-    for (std::size_t b = 0; b < begin.bone.size(); ++b)
-    {
-      now.bone.push_back(interpolate(begin.bone[b], end.bone[b], fraction(step)));
-      now.bone_before.push_back(interpolate(begin.bone[b], end.bone[b], fraction(step - 1)));
-    }
+    ConstraintStep now{ time + (step + 1) * dt, dt, time + step * dt, bones(step), bones(step - 1), {}, step };
     now.activation.resize(begin.activation.size());
     activation(step, now.activation.data());
     return now;

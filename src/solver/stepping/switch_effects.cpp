@@ -52,7 +52,7 @@ void TimeStepper::effects_switched(const std::vector<Effect>& effects)
   }
   // Until the next search, steps follow the bound itself.
   if (model_->time_step_estimate == TimeStepEstimate::assembled)
-    backend_->measure_growth(std::numeric_limits<double>::infinity());
+    backend_->measure_growth(std::numeric_limits<double>::infinity(), false);
   displacements_were_set();
 }
 

@@ -147,14 +147,16 @@ void TimeStepController::observe(double measured, double speed, int steps)
   state_.latest_measured = measured;
 }
 
-void TimeStepController::renew_assembled(const std::vector<float>& activation, bool moving,
-                                         const AssembledEstimate::Search& search)
+AssembledEstimate::Renewal TimeStepController::renew_assembled(const std::vector<float>& activation, bool moving,
+                                                               const AssembledEstimate::Search& search)
 {
-  if (state_.assembled.renew(activation, moving, state_.latest_measured, bound_at_rest_, search))
+  const auto renewal = state_.assembled.renew(activation, moving, state_.latest_measured, bound_at_rest_, search);
+  if (renewal.searched)
   {
     const double found = state_.assembled.latest();
     state_.measured = state_.latest_measured = found > 0 && std::isfinite(found) ? found : bound_at_rest_;
   }
+  return renewal;
 }
 
 bool TimeStepController::muscles_switched(const std::vector<float>& from, const std::vector<float>& to)

@@ -76,7 +76,8 @@ public:
   /// Sets the bound at rest [1/s2], which changes when effects are switched.
   void set_bound_at_rest(double squared);
   /// Searches for the highest frequency of the assembled model if this is due (AssembledEstimate::renew()).
-  void renew_assembled(const std::vector<float>& activation, bool moving, const AssembledEstimate::Search& search);
+  AssembledEstimate::Renewal renew_assembled(const std::vector<float>& activation, bool moving,
+                                             const AssembledEstimate::Search& search);
   void reset();
 
   const State& state() const { return state_; }

@@ -209,7 +209,11 @@ void TimeStepper::renew_assembled_estimate(const Controls& asked)
     motion_.changed = motion_.time;
   // Tissue that swings on distorts voxels. If these got mass, others are as close to the limit.
   const bool swings = !motion_.added.empty() && motion_.time - motion_.changed < swinging;
-  controller_.renew_assembled(most, moving || swings, search);
+  const auto renewal = controller_.renew_assembled(most, moving || swings, search);
+  const double found = controller_.state().assembled.latest();
+  if (renewal.searched)
+    backend_->measure_growth(found > 0 && std::isfinite(found) ? found : std::numeric_limits<double>::infinity(),
+                             renewal.confirmed);
 }
 
 // Makes a plan that ends with the controls `next`, and advances the muscles' activations to its end.
@@ -218,7 +222,9 @@ StepPlan TimeStepper::plan_to(const Controls& next, const TimeStepController::Ch
   StepPlan plan;
   plan.steps = choice.steps;
   plan.dt = choice.dt;
-  plan.first_kick = motion_.latest_step > 0 ? 0.5 * (motion_.latest_step + plan.dt) : plan.dt;
+  // A backend may need another launch for a kick of its own. Rounding errors shall not cost one.
+  const double longer = motion_.latest_step > 0 ? motion_.latest_step / plan.dt - 1 : 0;
+  plan.first_kick = std::abs(longer) > 1e-9 ? plan.dt * (1 + 0.5 * longer) : plan.dt;
   plan.time = motion_.time;
   const std::vector<float> before = motion_.activation;
   respond(*model_, motion_.controls.activation, next.activation, plan.steps * plan.dt, motion_.activation);
