@@ -1,5 +1,6 @@
 #include "cuda/backend/cuda_solver.hpp"
 
+#include "cuda/backend/contact_point.hpp"
 #include "cuda/backend/device_code.hpp"
 #include "cuda/backend/highest_frequency.hpp"
 #include "cuda/backend/launch_choice.hpp"
@@ -38,8 +39,10 @@ CudaSolver::CudaSolver(const BackendInput& input, const std::string& remark)
   still_ = DeviceArray<std::uint32_t>(still);
   // The stream synchronises with the default stream, so that events recorded there enclose this solver's work.
   require(cudaStreamCreate(&stream_), "making a stream");
-  const std::size_t controls = sizeof(double) * (2 * model_->muscles.size() + 12 * 64 * model_->bones.size() + 2) +
-                               (discretisation_.viscous_terms > 0 ? 128 * sizeof(float) : 0);
+  // Room for what stage() writes for the longest plan.
+  const std::size_t of_body = pose_entries + 2 * 3 + 1, steps = most_steps_per_plan + 1;
+  const std::size_t of_step = bone_motion_entries * model_->bones.size() + of_body * model_->contacts.size() + 1;
+  const std::size_t controls = sizeof(float) * (plan_measures + 2 + 2 * model_->muscles.size() + steps * of_step);
   for (auto& slot : slots_)
   {
     slot.staged = PinnedArray<char>(controls);
@@ -207,8 +210,9 @@ void CudaSolver::skin(SkinState& out)
 }
 
 // Plans of 64 steps, or of 0.5 ms with short steps, are long enough to hide the host's work between them, and short
-// enough for the time step to follow tissue that stiffens. The guard's checks and dynamic relaxation have to wait for
-// the device and are therefore rare.
+// enough for the time step to follow tissue that stiffens. Tissue may touch itself where a search before the plan has
+// not looked; such plans are shorter. The guard's checks and dynamic relaxation have to wait for the device and are
+// therefore rare.
 BackendTraits CudaSolver::traits() const
 {
   cudaDeviceProp device{};
@@ -219,7 +223,7 @@ BackendTraits CudaSolver::traits() const
   BackendTraits traits;
   traits.description = fmt::format("cuda (float, {}, {}{})", device.name, cut, remark_);
   traits.seconds_per_plan = 0.5e-3;
-  traits.fewest_steps_per_plan = 64;
+  traits.fewest_steps_per_plan = model_->self_contacts.empty() ? 64 : 32;
   traits.most_steps_per_plan = most_steps_per_plan;
   traits.steps_per_observation = model_->nodes.size() > 1000000 ? 2048 : 512;
   traits.steps_per_check = 2048;

@@ -65,10 +65,8 @@ void CudaSolver::stage(const StepPlan& plan, const std::vector<float>& relaxatio
   const std::size_t bytes = relaxation_at + sizeof(float) * relaxation.size();
   if (bytes > slot.staged.size())
   {
-    // Room for a long plan, because each allocation takes as long as a hundred steps.
-    const std::size_t room = bytes * std::max(1, most_steps_per_plan / plan.steps);
-    slot.staged = PinnedArray<char>(room);
-    slot.controls = DeviceArray<char>(room);
+    slot.staged = PinnedArray<char>(bytes);
+    slot.controls = DeviceArray<char>(bytes);
   }
   char* const staged = slot.staged.data();
   std::memset(staged, 0, motions_at);

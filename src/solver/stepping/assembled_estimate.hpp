@@ -14,8 +14,10 @@ namespace frontalis
 ///
 /// Between searches the stiffness of the model can grow by at most what the stiffness of its voxels grows. Backends
 /// measure this at each node as the bound (physics/time_step.hpp) times found / (bound at the search), where that is
-/// below 1: at the search the largest of these figures is what the search found, and later it grows as the stiffness
-/// around any node grows that could set the time step [1/s2].
+/// below 1: at the search the largest of these figures is at most what the search found, and later it grows as the
+/// stiffness around any node grows that could set the time step [1/s2]. After searches that confirm each other a node
+/// has the smallest of its factors, which are of different moments; that nodes which were stiff one after the other may
+/// be so at once is left to the margin.
 class AssembledEstimate
 {
 public:
@@ -26,8 +28,9 @@ public:
   struct Renewal
   {
     bool searched = false;
-    /// Whether the search found what the one before had found, in a model that nothing moves. What was measured since
-    /// then therefore was not growth of the highest frequency, however much it was.
+    /// Whether the search found what the one before had found, while no bone moves and no activation exceeds those
+    /// searched for. What was measured since then therefore was not growth of the highest frequency, however much it
+    /// was.
     bool confirmed = false;
   };
 

@@ -213,7 +213,6 @@ double HostBackend<Real, Relaxed>::highest_frequency_squared()
 template <class Real, class Relaxed>
 void HostBackend<Real, Relaxed>::masses_changed(const std::vector<std::int32_t>& /*nodes*/)
 {
-  mobility_ = mobility(discretisation_);
   if (search_)
     search_->masses_changed(discretisation_);
   for (NodePart<Real>* const part : active_parts())

@@ -93,7 +93,8 @@ public:
   /// The modes above a squared frequency [1/s2] that the latest search met. Called only if
   /// MassScalingSettings::in_motion is set.
   virtual std::vector<FoundMode> modes_above(double frequency_squared) = 0;
-  /// Called after masses of these nodes have changed in the discretisation.
+  /// Called after masses of these nodes have changed in the discretisation. What plans measure may follow them at the
+  /// next measure_growth() only.
   virtual void masses_changed(const std::vector<std::int32_t>& nodes) = 0;
   virtual Monitor monitor() = 0;
   /// Work since the energy account was opened; with `open`, the account is opened now. Called only if

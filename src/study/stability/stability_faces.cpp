@@ -81,7 +81,7 @@ void face_torn_lips(CaseRun& run, const std::string& scene)
   GuardedTrial motion(run, run.settings.scene(scene), true, { face_check_interval });
   const Controls rest = rest_controls(motion.model()), press = expression_controls(motion.model(), "lip_press");
   Controls torn = press;
-  torn.bone = expression_controls(motion.model(), "jaw_open").bone;
+  torn.bone = action_unit_controls(motion.model(), { { "AU27", 1 } }).bone;
   const auto tear = [&]
   {
     switch_to(motion, press, time_of(run, "press"));
