@@ -42,20 +42,25 @@ Scene two_blocks(double gap, const std::string& gaps, double height = 7.3e-3)
   return scene;
 }
 
-/// A block of 24 x 12 x 12 mm with a slit from its side x = 0 to x = `end` at the height `z` [m].
-Scene slit_block(double z, double voxel = 3e-3, bool slit = true, double end = 12e-3)
+/// A surface from a file at the height `z` [m], from beyond the blocks' side to x = `end`.
+Surface slit_at(double z, double end)
 {
-  Scene scene = plain_scene(voxel);
   static const TemporaryFolder folder;
-  const std::string file = folder / ("slit" + std::to_string(z) + "_" + std::to_string(1e3 * end) + ".obj");
+  const std::string file = folder / ("slit" + std::to_string(1e3 * z) + "_" + std::to_string(1e3 * end) + ".obj");
   TriangleMesh mesh;
   for (const double x : { -1e-3, end })
     for (const double y : { -1e-3, 13e-3 })
       mesh.vertices.push_back({ x, y, z });
   mesh.triangles = { { 0, 2, 1 }, { 1, 2, 3 } };
   write_obj(mesh, file, [](const auto&) { return true; });
-  scene.surfaces = { box_surface("block", { 12e-3, 6e-3, 6e-3 }, { 24e-3, 12e-3, 12e-3 }, 1e-3),
-                     file_surface("slit", file) };
+  return file_surface("slit", file);
+}
+
+/// A block of 24 x 12 x 12 mm with a slit from its side x = 0 to x = `end` at the height `z` [m].
+Scene slit_block(double z, double voxel = 3e-3, bool slit = true, double end = 12e-3)
+{
+  Scene scene = plain_scene(voxel);
+  scene.surfaces = { box_surface("block", { 12e-3, 6e-3, 6e-3 }, { 24e-3, 12e-3, 12e-3 }, 1e-3), slit_at(z, end) };
   scene.volumes = { volume_inside("tissue", { "block" }, "fat", true) };
   if (slit)
     scene.volumes[0].slits = { "slit" };
@@ -284,6 +289,32 @@ TEST(Gaps, PointsFollowTheirOwnSide)
     ++beside;
   }
   EXPECT_GT(beside, 20u);
+}
+
+// As in lips whose fissure is not quite where they meet: the slit cuts a sliver off one of the blocks.
+TEST(Gaps, PointsFollowTheirOwnSideWhereASlitMissesTheGap)
+{
+  for (const double beside : { -0.2e-3, -0.1e-3, 0.0, 0.2e-3, 0.3e-3 })
+    for (const char* const name : { "lower", "upper" })
+    {
+      Scene scene = two_blocks(0.1e-3, "glued");
+      scene.surfaces.push_back(slit_at(7.3e-3 + beside, 13e-3));
+      for (auto& volume : scene.volumes)
+        volume.slits = { "slit" };
+      scene.skin.surface = name;
+      const Model model = bake(scene);
+      const auto bodies = bodies_of(model);
+      std::set<std::size_t> carrying;
+      for (std::size_t v = 0; v < model.skin.vertices.size(); ++v)
+      {
+        const Vector3 p = transformed(model.to_scene, model.skin.vertices[v]);
+        if (std::min({ p[0], p[1], 12e-3 - p[0], 12e-3 - p[1] }) < 0.5e-3)
+          continue;  // at the sides the depth does not lead out of the sliver
+        const auto voxel = static_cast<std::size_t>(model.skin_binding.voxel[v]);
+        carrying.insert(bodies[static_cast<std::size_t>(model.voxel_nodes[voxel][0])]);
+      }
+      EXPECT_EQ(carrying.size(), 1U) << name << ' ' << beside;
+    }
 }
 
 TEST(Gaps, WithoutAGapNothingChanges)

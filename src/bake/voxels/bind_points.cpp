@@ -12,6 +12,7 @@ namespace
 
 constexpr std::size_t points_per_task = 1024;
 constexpr double farthest_landmark = 20e-3;  // largest distance from the skin [m]
+constexpr double deep = 0.5e-3;              // depth below a surface at which the side of a gap is certain [m]
 
 /// Finds the voxel that moves a point: the one that contains it, or the nearest one within the extrapolation distance.
 class PointBinder
@@ -27,7 +28,8 @@ public:
   bool bind(const Vector3d& local, const Vector3d& inwards, std::int32_t& voxel,
             std::array<float, 3>& coordinates) const
   {
-    voxel = frame_.owner(model_, index_, local + 0.02 * model_.spacing[0] * inwards);
+    const double edge = model_.spacing[0];
+    voxel = frame_.owner(model_, index_, local + 0.02 * edge * inwards, local + std::min(0.25 * edge, deep) * inwards);
     if (voxel >= 0)
     {
       set_coordinates(local, voxel, coordinates);

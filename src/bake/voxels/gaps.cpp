@@ -350,7 +350,7 @@ bool Gaps::extends_to(const Vector3d& centre, int flap, const Vector3d& point) c
                      });
 }
 
-std::optional<Gaps::Owner> Gaps::owner(const Vector3d& p) const
+std::optional<Gaps::Owner> Gaps::owner(const Vector3d& p, const Vector3d& inside) const
 {
   const VoxelPlace middle = place_of(p);
   if (level(middle) != Level::at_gap)
@@ -380,7 +380,7 @@ std::optional<Gaps::Owner> Gaps::owner(const Vector3d& p) const
   const auto sees = [&](const Found& f)
   {
     const Vector3d& x = f.tissue->points[f.point];
-    const Way way = walls_->way_out(x, f.tissue->enclosing[f.point], p, walls_->pieces_in(Box(x).extend(p)));
+    const Way way = walls_->way_out(x, f.tissue->enclosing[f.point], inside, walls_->pieces_in(Box(x).extend(inside)));
     return way == Way::inside || way == Way::out;
   };
   const auto end = found.begin() + static_cast<std::ptrdiff_t>(looks);

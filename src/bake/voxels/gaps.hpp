@@ -27,13 +27,16 @@ public:
   /// if there is no gap.
   void part(Voxels& voxels, BakeMonitor& monitor);
 
-  /// The voxel whose tissue contains a point near a gap, or is nearest to the point.
+  /// A voxel at a gap.
   struct Owner
   {
     Vector3d centre{ 0, 0, 0 };  ///< centre of the voxel, scene coordinates [m]
     int flap = 0;
   };
-  std::optional<Owner> owner(const Vector3d& p) const;
+  /// The voxel whose tissue contains a point near a gap, or is nearest to the point. `inside`: a point of the same
+  /// tissue farther from its surface. It decides on the side of a gap, since a slit may pass a little beside the gap
+  /// and cut a sliver with the point off the tissue.
+  std::optional<Owner> owner(const Vector3d& p, const Vector3d& inside) const;
 
   /// Whether the tissue of a voxel extends to a point of a surface without a gap in between, so that the surface may
   /// hold it. `centre`: centre of the voxel, scene coordinates. True for voxels that are not near a gap.

@@ -76,11 +76,12 @@ void join_flaps(const Voxels& voxels, const std::vector<std::uint32_t>& order, c
 
 }  // namespace
 
-std::int32_t LocalFrame::owner(const Model& model, const VoxelIndex& index, const Vector3d& local) const
+std::int32_t LocalFrame::owner(const Model& model, const VoxelIndex& index, const Vector3d& local,
+                               const Vector3d& inside) const
 {
   if (gaps == nullptr)
     return -1;
-  const auto found = gaps->owner(to_scene(local));
+  const auto found = gaps->owner(to_scene(local), to_scene(inside));
   if (!found)
     return -1;
   const Vector3d cell = to_local(found->centre).cwiseQuotient(to_vector(model.spacing)).array().floor();

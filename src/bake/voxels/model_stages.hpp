@@ -60,7 +60,7 @@ struct LocalFrame
   }
   /// Index of the voxel to whose tissue a point near a gap belongs; -1 for a point that is not near a gap. `local`: the
   /// point in local coordinates [m].
-  std::int32_t owner(const Model& model, const VoxelIndex& index, const Vector3d& local) const;
+  std::int32_t owner(const Model& model, const VoxelIndex& index, const Vector3d& local, const Vector3d& inside) const;
   Vector3d voxel_centre(const Model& model, std::size_t e) const
   {
     const auto v = rest_place(model, model.voxels[e]);

@@ -76,7 +76,7 @@ private:
       const Vector3d middle =
           std::accumulate(polygon.begin(), polygon.end(), Vector3d(Vector3d::Zero())) / polygon.size();
       const Vector3d inside = middle - 0.02 * model_.spacing[0] * normal.normalized();
-      if (const std::int32_t e = amount > 0 ? frame_.owner(model_, index_, inside) : -1; e >= 0)
+      if (const std::int32_t e = amount > 0 ? frame_.owner(model_, index_, inside, inside) : -1; e >= 0)
         area_[e] += amount;
       else
         give(place, normal, amount);
