@@ -281,7 +281,8 @@ TEST_F(RunModel, interrupted_within_an_endless_slice_ends_too)
     EXPECT_EQ(result.errors, "interrupted\n");
     const nlohmann::json json = json_from(text_of(frames + "/run.json"));
     EXPECT_EQ(json.at("complete"), false);
-    EXPECT_EQ(json.at("frames"), 3);
+    EXPECT_GE(json.at("frames"), 2) << "the interrupt may come before the slice begins";
+    EXPECT_LE(json.at("frames"), 3);
     std::filesystem::remove_all(frames);
   }
 }
