@@ -274,16 +274,21 @@ TEST_F(RunModel, interrupted_within_an_endless_slice_ends_too)
   std::ofstream(table) << "time,pull\n0,0\n0.05,0\n0.45,1\n";
   for (const char* guard : { "0", "512" })
   {
-    const ProgramResult result = run_program({ "run", model, "--backend", "cpu", "--activations", table, "--seconds",
-                                               "0.45", "--frame-rate", "20", "--guard", guard, "--frames", frames },
-                                             frames + "/skin_0001.ply");
-    EXPECT_EQ(result.code, 130) << guard;
-    EXPECT_EQ(result.errors, "interrupted\n");
-    const nlohmann::json json = json_from(text_of(frames + "/run.json"));
-    EXPECT_EQ(json.at("complete"), false);
-    EXPECT_GE(json.at("frames"), 2) << "the interrupt may come before the slice begins";
-    EXPECT_LE(json.at("frames"), 3);
-    std::filesystem::remove_all(frames);
+    // An interrupt that comes before the slice begins, after two frames, is sent again in another run.
+    int written = 2;
+    for (int attempt = 0; attempt < 10 && written == 2; ++attempt)
+    {
+      const ProgramResult result = run_program({ "run", model, "--backend", "cpu", "--activations", table, "--seconds",
+                                                 "0.45", "--frame-rate", "20", "--guard", guard, "--frames", frames },
+                                               frames + "/skin_0001.ply");
+      EXPECT_EQ(result.code, 130) << guard;
+      EXPECT_EQ(result.errors, "interrupted\n");
+      const nlohmann::json json = json_from(text_of(frames + "/run.json"));
+      EXPECT_EQ(json.at("complete"), false);
+      written = json.at("frames");
+      std::filesystem::remove_all(frames);
+    }
+    EXPECT_EQ(written, 3) << guard;
   }
 }
 
