@@ -104,6 +104,28 @@ TEST_F(Import, AnInsideOutPieceIsTurnedAndACavityIsNot)
   EXPECT_NEAR(1e9 * signed_volume(surface.mesh) / (ball * (1000 - 125 + 1000)), 1, 0.02);
 }
 
+TEST_F(Import, HalvesOfAnyFormatAreMirrored)
+{
+  const std::string file = folder_ / "half.stl";
+  std::ofstream out(file);
+  out << "solid half\n";
+  const TriangleMesh half = box({ 5, 0, 0 }, { 10, 10, 10 });
+  for (const Triangle& t : half.triangles)
+  {
+    if (half.vertices[t[0]][0] == 0 && half.vertices[t[1]][0] == 0 && half.vertices[t[2]][0] == 0)
+      continue;
+    out << "facet normal 0 0 0\nouter loop\n";
+    for (const std::int32_t v : t)
+      out << "vertex " << half.vertices[v][0] << " " << half.vertices[v][1] << " " << half.vertices[v][2] << "\n";
+    out << "endloop\nendfacet\n";
+  }
+  out << "endsolid half\n";
+  out.close();
+  Surface surface = file_surface("body", file, 1e-3);
+  surface.mirror = 0;
+  EXPECT_NEAR(signed_volume(load_surface(surface, 1e-3).mesh), 2e-6, 1e-12);
+}
+
 TEST_F(Import, TrianglesThatDisagreeAreTurned)
 {
   TriangleMesh mesh = box({ 0, 0, 0 }, { 10, 10, 10 });

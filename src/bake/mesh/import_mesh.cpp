@@ -148,6 +148,25 @@ std::string unreadable_vertex(const std::string& file, const std::string& vertex
   return {};
 }
 
+/// What an OBJ file is in truth, by its first bytes and its size, or an empty text.
+std::string format_of_named_obj(const std::string& file)
+{
+  std::ifstream stream(file, std::ios::binary);
+  std::array<char, 84> header{};
+  stream.read(header.data(), header.size());
+  const std::string start(header.data(), static_cast<std::size_t>(stream.gcount()));
+  if (start.empty())
+    return "is empty; copy or export it again";
+  const auto begins = [&](const char* with) { return start.rfind(with, 0) == 0; };
+  const bool wide = begins("\xff\xfe") || begins("\xfe\xff");  // UTF-16, which the importer reads
+  const char* const format = begins("ply")                                    ? "a PLY"
+                             : begins("solid")                                ? "an STL"
+                             : begins("\x1f\x8b")                             ? "a compressed"
+                             : !wide && start.find('\0') != std::string::npos ? "a binary"
+                                                                              : "";
+  return *format == '\0' ? "" : fmt::format("is {} file and no OBJ file; give it the name of its format", format);
+}
+
 /// Throws Error if a face has no corners or one that is not there, which the importers of PLY and OFF do not check.
 void check_faces(const aiScene& scene, const std::string& file)
 {
@@ -180,7 +199,10 @@ TriangleMesh import_mesh(const std::string& file, double unit)
   if (std::string(start.data(), start.size()) == "\xef\xbb\xbf")
     throw Error("mesh file " + file + ": begins with a byte-order mark; save it as text without one");
   const std::string extension = in_lower_case(std::filesystem::path(file).extension().string());
-  std::string fault = extension == ".ply" ? cut_off_ply(file) : extension == ".stl" ? cut_off_stl(file) : "";
+  std::string fault = extension == ".ply"   ? cut_off_ply(file)
+                      : extension == ".stl" ? cut_off_stl(file)
+                      : extension == ".obj" ? format_of_named_obj(file)
+                                            : "";
   if (fault.empty() && (extension == ".obj" || extension == ".stl"))
     fault = unreadable_vertex(file, extension == ".obj" ? "v" : "vertex");
   if (!fault.empty())

@@ -8,6 +8,7 @@
 #include "bake/shapes/muscle_net.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace frontalis
 {
@@ -41,12 +42,35 @@ TriangleMesh make_any(const Shape& shape, double unit)
   }
 }
 
-/// Makes the surface of a control cage, an OBJ file of polygons that is mirrored and subdivided as the scene says.
-TriangleMesh import_cage(const Surface& surface)
+PolygonMesh polygons_of(TriangleMesh mesh)
 {
-  PolygonMesh cage = read_polygons(surface.file, surface.unit);
+  join_vertices(mesh);
+  PolygonMesh polygons;
+  polygons.group_names = { "default" };
+  for (const Vector3& v : mesh.vertices)
+    polygons.vertices.push_back(to_vector(v));
+  for (const Triangle& t : mesh.triangles)
+    polygons.faces.push_back({ t[0], t[1], t[2] });
+  polygons.groups.assign(polygons.faces.size(), 0);
+  return polygons;
+}
+
+/// Reads the surface of a mesh file. It is subdivided, if it is a control cage, and mirrored as the scene says.
+TriangleMesh import_surface(const Surface& surface)
+{
+  if (surface.subdivide == 0 && surface.mirror < 0)
+    return import_mesh(surface.file, surface.unit);
+  PolygonMesh cage = surface.subdivide > 0 ? read_polygons(surface.file, surface.unit)
+                                           : polygons_of(import_mesh(surface.file, surface.unit));
   if (surface.mirror >= 0)
     cage = with_mirror_image(cage, surface.mirror);
+  constexpr double most_triangles = 2e7;  // the bake would take several minutes and 20 GB
+  const double triangles = 2 * static_cast<double>(cage.faces.size()) * std::pow(4, surface.subdivide);
+  if (triangles > most_triangles)
+    throw failure(
+        "'subdivide: {}' makes about {:.0f} million triangles of {} faces, at most {:.0f} million are allowed; "
+        "give a smaller number",
+        surface.subdivide, 1e-6 * triangles, cage.faces.size(), 1e-6 * most_triangles);
   return subdivide(cage, surface.subdivide);
 }
 
@@ -240,7 +264,7 @@ LoadedSurface load_surface(const Surface& surface, double unit)
       flip(mesh);
     return loaded;
   }
-  mesh = surface.subdivide > 0 || surface.mirror >= 0 ? import_cage(surface) : import_mesh(surface.file, surface.unit);
+  mesh = import_surface(surface);
   const Vector3d first_corner = vertex(mesh, mesh.triangles.front()[0]);
   const auto found = [&](const std::string& text)
   { loaded.findings.push_back(fmt::format("surface '{}': {}", surface.name, text)); };

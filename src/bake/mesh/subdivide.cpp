@@ -197,6 +197,8 @@ PolygonMesh read_polygons(const std::string& file, double unit)
       mesh.groups.push_back(group);
     }
   }
+  if (mesh.faces.empty())
+    throw failure("mesh file {}: has no faces as OBJ files have them, and only OBJ files can be subdivided", file);
   return mesh;
 }
 
