@@ -283,6 +283,7 @@ Model bake(const Scene& given, BakeReport* report, const BakeProgress& progress)
   }
   copy_settings(scene, frame, model);
   check_magnitudes(scene, model, monitor);
+  check_bone_centres(scene, monitor);
 
   monitor.begin("fibres");
   const std::vector<MuscleFibres> fibres = find_fibres(scene, volumes, surfaces, monitor);

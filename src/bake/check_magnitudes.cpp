@@ -3,6 +3,8 @@
 #include "bake/messages.hpp"
 #include "frontalis/physics/materials/lookup.hpp"
 
+#include <set>
+
 namespace frontalis
 {
 
@@ -29,6 +31,27 @@ void check_magnitudes(const Scene& scene, const Model& model, BakeMonitor& monit
     check(place, "cross_section", muscle.cross_section, 0, 0.01, "m2");
   }
   check(scene.file, "gravity", to_vector(scene.gravity).norm(), 0, 100, "m/s2");
+  constexpr double thinnest = 5e-6, thickest = 0.01;
+  for (const Layer& layer : scene.layers)
+    if (layer.thickness < thinnest || layer.thickness > thickest)
+      monitor.warn("{} is {} thick, expected {} to {}; check its unit", place_in_scene(scene, "layer", layer),
+                   length_text(layer.thickness, scene.unit), length_text(thinnest, scene.unit),
+                   length_text(thickest, scene.unit));
+}
+
+void check_bone_centres(const Scene& scene, BakeMonitor& monitor)
+{
+  std::set<std::string> told;
+  for (const auto* poses : { &scene.expressions, &scene.action_units })
+    for (const auto& [name, pose] : *poses)
+      for (const BonePose& bone : pose.bones)
+        if (to_vector(bone.turn).norm() > 0 && scene.bone_centres.count(bone.bone) == 0 &&
+            told.insert(bone.bone).second)
+          monitor.warn(
+              "{}: '{}' turns bone '{}' about the origin of the face frame, because the bone has no centre; give it "
+              "one, "
+              "as in 'bones: {{{}: {{centre: [x, y, z]}}}}'",
+              scene.file, name, bone.bone, bone.bone);
 }
 
 }  // namespace frontalis

@@ -5,8 +5,11 @@
 namespace frontalis
 {
 
-/// Warns of materials, muscles and gravity that are so far from any tissue, bone or silicone that a unit is probably
-/// missing or wrong: a number without a unit is in SI units, so that 'young: 34' is 34 Pa.
+/// Warns of materials, muscles, layers and gravity that are so far from any tissue, bone or silicone that a unit is
+/// probably missing or wrong: a number without a unit is in SI units, so that 'young: 34' is 34 Pa.
 void check_magnitudes(const Scene& scene, const Model& model, BakeMonitor& monitor);
+
+/// Warns of bones that expressions or action units turn although the scene gives no centre for them.
+void check_bone_centres(const Scene& scene, BakeMonitor& monitor);
 
 }  // namespace frontalis

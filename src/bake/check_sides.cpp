@@ -82,18 +82,29 @@ void check_pairs(const Scene& scene, const std::map<std::string, Thing>& things,
         first_across);
 }
 
-/// Warns of surfaces from different files that have the same mesh.
+/// Warns of surfaces from different files, and of surfaces of different muscles, that have the same mesh.
 void find_equal_surfaces(const Scene& scene, const PreparedSurfaces& surfaces, BakeMonitor& monitor)
 {
+  const auto is_muscle = [&](const Surface& surface)
+  {
+    return std::any_of(scene.muscles.begin(), scene.muscles.end(),
+                       [&](const SceneMuscle& muscle)
+                       {
+                         const Volume& volume =
+                             scene.volumes[index_of(scene.volumes, muscle.volume, scene.file, "volume")];
+                         return volume.inside == std::vector<std::string>{ surface.name };
+                       });
+  };
   for (auto a = surfaces.begin(); a != surfaces.end(); ++a)
     for (auto b = std::next(a); b != surfaces.end(); ++b)
     {
       const Surface &one = scene.surfaces[index_of(scene.surfaces, (*a)->name(), scene.file, "surface")],
                     &other = scene.surfaces[index_of(scene.surfaces, (*b)->name(), scene.file, "surface")];
-      if (!one.file.empty() && !other.file.empty() && one.file != other.file &&
+      const bool may_be_equal = one.file == other.file && !(is_muscle(one) && is_muscle(other));
+      if (!one.file.empty() && !other.file.empty() && !may_be_equal &&
           (*a)->mesh().triangles.size() == (*b)->mesh().triangles.size() && (*a)->box().min() == (*b)->box().min() &&
           (*a)->box().max() == (*b)->box().max())
-        monitor.warn("{} has the mesh of '{}'; check whether one file was exported or copied under two names",
+        monitor.warn("{} has the mesh of '{}'; check whether one file was exported, copied or named twice",
                      place_in_scene(scene, "surface", one), other.name);
     }
 }

@@ -68,6 +68,8 @@ Movie::Movie(const MovieOptions& options, double frame_rate, const Model& model)
           ": ImageMagick's program convert is missing (Debian's package imagemagick); a folder takes the frames");
     folder_ += ".frames";
   }
+  else if (std::filesystem::path(path_).has_extension() && !std::filesystem::is_directory(path_))
+    throw Error("--movie " + path_ + ": only NAME.gif or a folder is written; a folder's name has no extension");
   make_folder(folder_);
   remove_files(folder_, frame_names);
 }

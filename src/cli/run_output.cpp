@@ -8,6 +8,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -155,6 +156,29 @@ void print_set_up(const Model& model, const RunSummary& summary)
   std::fflush(stdout);
 }
 
+// Warns of voxels that are turned inside out.
+void print_inverted(const Model& model, const Monitor& monitor)
+{
+  const auto& corners = model.voxel_nodes[static_cast<std::size_t>(monitor.worst_voxel)];
+  std::array<double, 3> place{ 0, 0, 0 };
+  for (const std::int32_t node : corners)
+  {
+    const auto corner = model.to_scene(rest_position(model, static_cast<std::size_t>(node)));
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      place[axis] += 1e3 / 8 * corner[axis];
+  }
+  const auto held = std::find_if(model.rigid.begin(), model.rigid.end(),
+                                 [&](const RigidNode& n)
+                                 { return std::find(corners.begin(), corners.end(), n.node) != corners.end(); });
+  const bool named = held != model.rigid.end() && held->constraint >= 0;
+  fmt::print(
+      "warning            {} voxels are turned inside out at the end, the worst at ({:.1f}, {:.1f}, {:.1f}) mm in the "
+      "scene{}: move the face less, or let more tissue glide on bone\n",
+      monitor.inverted, place[0], place[1], place[2],
+      named ? fmt::format(", where constraint '{}' holds tissue", model.constraints[std::size_t(held->constraint)])
+            : "");
+}
+
 void print_result(const Model& model, const RunSummary& summary)
 {
   for (std::size_t l = 0; l < model.landmarks.size(); ++l)
@@ -169,6 +193,8 @@ void print_result(const Model& model, const RunSummary& summary)
   fmt::print("hourglass share    {:.3g} of the elastic energy at the end\n", hourglass_share(summary.monitor));
   fmt::print("worst J            {:.4f} at the end, {:.4f} in the run\n", summary.monitor.worst_jacobian,
              summary.worst_jacobian);
+  if (summary.monitor.inverted > 0)
+    print_inverted(model, summary.monitor);
   if (summary.monitor.added_mass > 0)
     fmt::print("mass added         {:.2g} % of the model's, for longer steps\n", 100 * summary.monitor.added_mass);
   if (summary.ledger)

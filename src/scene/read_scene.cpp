@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 #include <memory>
+#include <sstream>
 #include <utility>
 
 namespace frontalis
@@ -18,10 +19,10 @@ std::string read_text(const std::string& path, const std::string& what)
 {
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored))
-    throw Error(path + ": no such file; must be a " + what + " in YAML");
+    throw Error(path + ": no such file; give a YAML file (" + what + ")");
   std::ifstream file(path, std::ios::binary);
   if (std::filesystem::is_directory(path, ignored) || !file)
-    throw Error(path + ": cannot be read; must be a " + what + " in YAML");
+    throw Error(path + ": cannot be read; give a YAML file (" + what + ")");
   return { std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>() };
 }
 
@@ -155,14 +156,22 @@ YAML::Node load_yaml(const std::string& path, const std::string& what, const std
 {
   const auto place = [&](int line) { return fmt::format("{}:{}: {}: ", path, line, what); };
   YAML::Node root;
+  const std::string text = read_text(path, what);
   try
   {
-    root = YAML::Load(read_text(path, what));
+    root = YAML::Load(text);
   }
   catch (const YAML::Exception& error)
   {
-    throw Error(place(error.mark.is_null() ? 1 : error.mark.line + 1) + "not YAML: " + error.msg + "; must be " +
-                expected);
+    const int line = error.mark.is_null() ? 0 : error.mark.line;
+    std::istringstream lines(text);
+    std::string at;
+    for (int l = 0; l <= line; ++l)
+      std::getline(lines, at);
+    throw Error(place(line + 1) + "not YAML: " + error.msg +
+                (at.find('\t') == std::string::npos
+                     ? "; check the brackets, colons and indents of this line and of those above it"
+                     : "; this line has a tab: indent with spaces"));
   }
   if (root.IsNull())
     throw Error(place(1) + "the file is empty; must be " + expected);

@@ -42,8 +42,7 @@ Region read_region(const Node& node)
   for (std::size_t i = 0; i < 3; ++i)
     if (region.lower[i] >= region.upper[i])
     {
-      node.fault("lower {0} {1} m is not below upper {0} {2} m; must be less", "xyz"[i], region.lower[i],
-                 region.upper[i]);
+      node.fault("the {0} of 'lower' is not below that of 'upper'; must be less", "xyz"[i]);
       break;
     }
   return region;

@@ -312,7 +312,9 @@ Mapping::~Mapping()
     return;
   for (const auto& [key, node] : pairs_)
     if (!contains(asked_, key))
-      node.fault("unknown key; allowed are " + list_with_suggestion(key, asked_));
+      node.fault(key.find_first_not_of("0123456789") == std::string::npos
+                     ? "a number with a comma? Numbers have decimal points, as in 1.5"
+                     : "unknown key; allowed are " + list_with_suggestion(key, asked_));
 }
 
 Node Mapping::optional(const std::string& key)

@@ -128,6 +128,30 @@ accuracy: {draft: {voxel: 2.5}}
   }
 }
 
+TEST(Warnings, name_probable_mistakes)
+{
+  const TemporaryFolder folder;
+  const std::string box = std::string(FRONTALIS_SOURCE_DIRECTORY) + "/test/model/bad/box.obj",
+                    scene = folder / "scene.yaml";
+  std::ofstream(scene) << "unit: mm\nsurfaces: {body: {file: " << box << "}, puller: {file: " << box
+                       << "}, lifter: {file: " << box << R"(}}
+volumes: {tissue: {inside: body, material: fat, tissue: true}}
+materials: {fat: {young: 3 kPa, poisson: 0.45, density: 1000}}
+muscles: {puller: {fibre: [1, 0, 0], material: fat}, lifter: {fibre: [0, 0, 1], material: fat}}
+layers: [{name: dermis, surface: body, volume: tissue, material: fat, thickness: 0.002}]
+constraints: [{name: held, rigid: body, bone: jaw, crop: {upper: [null, null, 1]}}]
+expressions: {open: {bones: {jaw: {turn: [0, 20, 0]}}}}
+skin: {surface: body}
+accuracy: {draft: {voxel: 2.5}}
+)";
+  const ProgramResult baked = run_program({ "bake", scene, "-o", folder / "m.vtkhdf" });
+  EXPECT_EQ(baked.code, 0) << baked.errors;
+  expect_contains(baked.output, "surface 'puller' has the mesh of 'lifter'");
+  EXPECT_EQ(baked.output.find("has the mesh of 'body'"), std::string::npos) << "a body may be a muscle as a whole";
+  expect_contains(baked.output, "layer 'dermis' is 0.002 mm thick");
+  expect_contains(baked.output, "'open' turns bone 'jaw' about the origin of the face frame");
+}
+
 class BadSceneRun : public testing::TestWithParam<std::string>
 {
 };
