@@ -1,11 +1,14 @@
 #include "cuda/backend/launch_choice.hpp"
 
+#include "frontalis/error.hpp"
 #include "frontalis/solver/backend.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cstdlib>
+#include <cstring>
 
 namespace frontalis
 {
@@ -24,7 +27,14 @@ int attribute(cudaDeviceAttr which)
 int from_environment(const char* name, int otherwise, int least, int most)
 {
   const char* const text = std::getenv(name);
-  return text == nullptr ? otherwise : std::clamp(std::atoi(text), least, most);
+  if (text == nullptr)
+    return otherwise;
+  int value = 0;
+  const char* const end = text + std::strlen(text);
+  const auto read = std::from_chars(text, end, value);
+  if (read.ec != std::errc() || read.ptr != end)
+    throw Error(fmt::format("{} is '{}'; it must be a whole number, {} to {}", name, text, least, most));
+  return std::clamp(value, least, most);
 }
 
 int multiprocessors()

@@ -9,6 +9,7 @@
 
 #include <fmt/core.h>
 
+#include <unistd.h>
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif
@@ -44,7 +45,7 @@ double resident_bytes()
   std::ifstream file("/proc/self/statm");
   double size = 0, resident = 0;
   file >> size >> resident;
-  return resident * 4096;
+  return resident * static_cast<double>(::sysconf(_SC_PAGESIZE));
 }
 
 std::string percent(double share) { return fmt::format("{:.{}f} %", 100 * share, share < 0.1 ? 2 : 0); }

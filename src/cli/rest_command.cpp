@@ -38,10 +38,11 @@ Vectors resting(const std::shared_ptr<const Model>& model, const RestOptions& op
 {
   const auto solver = make_solver(model, options.solver);
   Progress progress;
-  const Equilibrium found = solver->settle(rest_controls(*model), 1e-3, options.seconds * 10,
+  const double seconds = 10 * options.seconds / model->time_scaling;
+  const Equilibrium found = solver->settle(rest_controls(*model), 1e-3, seconds,
                                            [&](const Equilibrium& now)
                                            {
-                                             progress.update("relaxing", now.seconds / (10 * options.seconds));
+                                             progress.update("relaxing", now.seconds / seconds);
                                              return !interrupt_requested();
                                            });
   if (interrupt_requested())

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 namespace frontalis
 {
@@ -35,7 +36,11 @@ void check_field(const std::string& array, const SampledField& field)
   check_positive(array + " (spacing)", 0, field.spacing);
   std::size_t bricks = 1;
   for (const std::int32_t count : field.bricks)
-    bricks *= static_cast<std::size_t>(std::max(count, 0));
+  {
+    const auto along = static_cast<std::size_t>(std::max(count, 0));
+    constexpr auto most = std::numeric_limits<std::size_t>::max();  // the product may be too large for its type
+    bricks = along > 0 && bricks > most / along ? most : bricks * along;
+  }
   check_length(array + " (table)", field.table.size(), bricks, "brick");
   const std::size_t stored = field.samples.size() / DistanceField::brick_size;
   check_length(array + " (samples)", field.samples.size(), stored * DistanceField::brick_size, "sample of a brick");

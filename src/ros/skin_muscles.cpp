@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 namespace frontalis
 {
@@ -14,9 +15,11 @@ SkinMuscles::SkinMuscles(const Model& model, double depth)
   const auto& size = model.size;
   const auto place_of = [&](const std::array<std::int32_t, 3>& v)
   { return (static_cast<std::size_t>(v[2]) * size[1] + v[1]) * size[0] + v[0]; };
+  // Where a gap parts tissue, two voxels have the same place: the second in `voxel_at`, the first in `other`.
   std::vector<std::int32_t> voxel_at(static_cast<std::size_t>(size[0]) * size[1] * size[2], -1);
+  std::vector<std::int32_t> other(model.voxels.size(), -1);
   for (std::size_t e = 0; e + 1 < model.fibre_begin.size(); ++e)
-    voxel_at[place_of(model.voxels[e])] = static_cast<std::int32_t>(e);
+    other[e] = std::exchange(voxel_at[place_of(rest_place(model, model.voxels[e]))], static_cast<std::int32_t>(e));
 
   RenderMesh mesh;
   mesh.triangles = model.skin.triangles;
@@ -40,15 +43,15 @@ SkinMuscles::SkinMuscles(const Model& model, double depth)
         at[axis] = static_cast<std::int32_t>(std::floor(x / model.spacing[axis]));
         inside = inside && at[axis] >= 0 && at[axis] < size[axis];
       }
-      const std::int32_t e = inside ? voxel_at[place_of(at)] : -1;
-      for (auto fibre = e < 0 ? 0 : model.fibre_begin[e]; e >= 0 && fibre < model.fibre_begin[e + 1]; ++fibre)
-      {
-        const auto weight = static_cast<double>(model.fibre_weight[fibre]);
-        if (weight <= 0)
-          continue;
-        found[static_cast<std::size_t>(model.fibre_muscle[fibre])] += weight;
-        sum += weight;
-      }
+      for (std::int32_t e = inside ? voxel_at[place_of(at)] : -1; e >= 0; e = other[static_cast<std::size_t>(e)])
+        for (auto fibre = model.fibre_begin[e]; fibre < model.fibre_begin[e + 1]; ++fibre)
+        {
+          const auto weight = static_cast<double>(model.fibre_weight[fibre]);
+          if (weight <= 0)
+            continue;
+          found[static_cast<std::size_t>(model.fibre_muscle[fibre])] += weight;
+          sum += weight;
+        }
     }
     for (const auto& [muscle, weight] : found)
       shares_.push_back({ muscle, static_cast<float>(weight / sum) });

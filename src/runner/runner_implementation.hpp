@@ -36,6 +36,7 @@ struct Runner::Implementation
   bool paused = false;
   bool reset_wanted = false;
   bool cancel_wanted = false;  ///< ends the call of step() that is under way
+  bool resetting = false;  ///< whether a reset has begun and not ended
   std::uint64_t resets_done = 0;
   std::string reset_error;  ///< why the latest reset failed; empty if it succeeded
   struct StepRequest
@@ -85,7 +86,7 @@ struct Runner::Implementation
   void publish(bool renew_monitor = false, bool hands_out = true);
   void run_frame();
   void serve_step(StepRequest& request);
-  void serve_switch(SwitchRequest& request);
+  void serve_switch(std::unique_lock<std::mutex>& lock);
   void refuse_requests(const std::string& error);
   void reset();
   void serve_until_stopped();

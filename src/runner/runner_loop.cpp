@@ -246,28 +246,38 @@ void Runner::Implementation::serve_step(StepRequest& request)
     done += seconds;
     const bool whole = advance(seconds, interpolate(begin, end, std::min(1.0, done / request.seconds)), interrupted);
     request.error = frame.failure;
-    const std::lock_guard<std::mutex> lock(mutex);
+    std::unique_lock<std::mutex> lock(mutex);
     if (!whole || interrupted())
       request.error = ended_early;
     else if (switch_request != nullptr)
-      serve_switch(*switch_request);
+      serve_switch(lock);
   }
   publish(true, request.hands_out);
   request.frame = frame;
 }
 
-// The caller must hold the mutex.
-void Runner::Implementation::serve_switch(SwitchRequest& request)
+// The lock is on the mutex. It is released while the guard checks the state, which can take long.
+void Runner::Implementation::serve_switch(std::unique_lock<std::mutex>& lock)
 {
-  try
+  SwitchRequest& request = *switch_request;
+  // The state is checked first, so that the guard does not save a state that became unstable since the latest check.
+  if (guard && !frame.failed)
   {
-    // The state is checked first, so that the guard does not save a state that became unstable since the latest check.
-    if (guard && !frame.failed)
-      guard->check();
-  }
-  catch (const Error& error)
-  {
-    fail(error.what());
+    lock.unlock();
+    try
+    {
+      guard->check(
+          [this]
+          {
+            const std::lock_guard<std::mutex> here(mutex);
+            return !stop;
+          });
+    }
+    catch (const Error& error)
+    {
+      fail(error.what());
+    }
+    lock.lock();
   }
   try
   {
@@ -307,6 +317,7 @@ void Runner::Implementation::reset()
   publish(true);
   const std::lock_guard<std::mutex> lock(mutex);
   reset_error.clear();
+  resetting = false;
   ++resets_done;
 }
 
@@ -327,11 +338,12 @@ void Runner::Implementation::serve_until_stopped()
         return refuse_requests("the runner is being stopped");
       if (switch_request != nullptr)
       {
-        serve_switch(*switch_request);
+        serve_switch(lock);
         if (idle())
           continue;
       }
       std::swap(reset_now, reset_wanted);
+      resetting = reset_now;
       // This also ends a step() that was requested before the reset but has not begun.
       if (reset_now)
       {
@@ -375,8 +387,12 @@ void Runner::Implementation::run()
       fail(error.what());
       std::unique_lock<std::mutex> lock(mutex);
       refuse_requests(frame.failure);
-      reset_error = frame.failure;
-      ++resets_done;  // failed resets count too, because their callers wait for this number
+      if (resetting)
+      {
+        resetting = false;
+        reset_error = frame.failure;
+        ++resets_done;  // failed resets count too, because their callers wait for this number
+      }
       wake.wait_for(lock, std::chrono::milliseconds(100), [&] { return stop || reset_wanted; });
     }
 }

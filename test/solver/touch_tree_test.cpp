@@ -1,4 +1,4 @@
-#include "solver/contact/triangle_tree.hpp"
+#include "solver/contact/touch_tree.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@ namespace frontalis
 namespace
 {
 
-using Tree = TriangleTree<float>;
+using Tree = TouchTree<float>;
 using Vector = Tree::Vector;
 
 // Triangles on their own, with three vertices each.
@@ -76,7 +76,7 @@ private:
 
 // With 1, 16, 17, 500 and 5,000 triangles the tree has one to four levels. The triangles have moved far from where the
 // blocks were chosen. All that touch_search::may_touch() accepts must be visited, and few others.
-TEST(TriangleTree, visits_all_triangles_that_a_vertex_may_touch)
+TEST(TouchTree, visits_all_triangles_that_a_vertex_may_touch)
 {
   constexpr double reach = 0.001;
   Chance chance;
@@ -122,7 +122,7 @@ TEST(TriangleTree, visits_all_triangles_that_a_vertex_may_touch)
   }
 }
 
-TEST(TriangleTree, visits_what_is_finite)
+TEST(TouchTree, visits_what_is_finite)
 {
   Cloud cloud;
   for (int t = 0; t < 40; ++t)
@@ -146,7 +146,7 @@ TEST(TriangleTree, visits_what_is_finite)
 
 // Vertices and triangles move at random. The bound must not be below the way by which any two corners that are close to
 // each other have approached each other; common motion, and motion of what is far away, must not count.
-TEST(TriangleTree, bounds_how_far_what_is_close_has_approached)
+TEST(TouchTree, bounds_how_far_what_is_close_has_approached)
 {
   constexpr double reach = 0.001, enough = 0.0002;
   Chance chance;

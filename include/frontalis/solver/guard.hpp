@@ -101,8 +101,8 @@ public:
   /// of an instability, which it ends too: Unstable is then not thrown. A motion that it has ended is in a good state.
   /// It may throw; then only Solver::reset() and restart() are of use.
   bool advance(double seconds, const Controls& target, const std::function<bool()>& go_on = {});
-  /// Checks the present state. After a finding it restores a good state, or throws Unstable.
-  void check();
+  /// Checks the present state. After a finding it restores a good state, or throws Unstable. `go_on`: as of advance().
+  void check(const std::function<bool()>& go_on = {});
   /// Like Solver::settle, with all checks of advance() but the check of the ledger, because settling opens a new
   /// ledger. Throws the errors of Solver::settle and of advance().
   Equilibrium settle(const Controls& target, double tolerance, double seconds,

@@ -3,7 +3,7 @@
 #include "frontalis/physics/surface_foot.hpp"
 #include "solver/contact/bound_node_way.hpp"
 #include "solver/contact/touching_surface.hpp"
-#include "solver/contact/triangle_tree.hpp"
+#include "solver/contact/touch_tree.hpp"
 #include "solver/cpu/touch_kernel.hpp"
 #include "solver/stepping/node_part.hpp"
 
@@ -165,7 +165,7 @@ private:
   std::vector<double> node_way_;  // BoundNodeWay::in_plane() of the latest step, one per plane of nodes [m]
   std::vector<double> lost_;      // energy lost to friction, one per plane of voxels [J]
   std::vector<double> opened_;    // sum of lost_ when the account was opened; the vector has one entry
-  TriangleTree<Real> tree_;
+  TouchTree<Real> tree_;
 };
 
 }  // namespace frontalis

@@ -133,8 +133,8 @@ void TissueContact<Real>::set_lane(PairVertices& vertices, PairBlock<Real>& bloc
 template <class Real>
 void TissueContact<Real>::make_tree()
 {
-  std::vector<typename TriangleTree<Real>::Triangle> at_rest(surface_.triangles.size());
-  std::vector<typename TriangleTree<Real>::Corners> corners;
+  std::vector<typename TouchTree<Real>::Triangle> at_rest(surface_.triangles.size());
+  std::vector<typename TouchTree<Real>::Corners> corners;
   for (const auto& triangle : surface_.triangles)
   {
     physics::SurfaceTriangle<double>& at = at_rest[corners.size()].at;
@@ -156,7 +156,7 @@ void TissueContact<Real>::place_triangles()
               [&](std::int32_t t)
               {
                 const auto& [corner, neighbour] = surface_.triangles[t];
-                typename TriangleTree<Real>::Triangle triangle;
+                typename TouchTree<Real>::Triangle triangle;
                 for (std::size_t i = 0; i < 3; ++i)
                 {
                   triangle.at.corner[i] = place(corner[i], moved);

@@ -1,4 +1,4 @@
-#include "solver/contact/triangle_tree.hpp"
+#include "solver/contact/touch_tree.hpp"
 
 #include <array>
 #include <cmath>
@@ -70,7 +70,7 @@ void divide(const std::vector<Point>& points, std::int32_t* begin, std::int32_t*
 }  // namespace
 
 template <class Real>
-void TriangleTree<Real>::make(const std::vector<Triangle>& at_rest, const std::vector<Corners>& corners, double span)
+void TouchTree<Real>::make(const std::vector<Triangle>& at_rest, const std::vector<Corners>& corners, double span)
 {
   std::vector<Point> points;
   for (const Triangle& t : at_rest)
@@ -118,7 +118,7 @@ void TriangleTree<Real>::make(const std::vector<Triangle>& at_rest, const std::v
 }
 
 template <class Real>
-void TriangleTree<Real>::reset()
+void TouchTree<Real>::reset()
 {
   std::fill(balls_.begin(), balls_.end(), BallBlock<Real>{});  // nothing is near balls of radius 0
   std::fill(facets_.begin(), facets_.end(), FacetBlock<Real>{});
@@ -126,7 +126,7 @@ void TriangleTree<Real>::reset()
 }
 
 template <class Real>
-void TriangleTree<Real>::list_arrays(ArrayList& list, Effect effect)
+void TouchTree<Real>::list_arrays(ArrayList& list, Effect effect)
 {
   list.add(effect, "tree", order_);
   list.add(effect, "tree", vertices_);
@@ -141,7 +141,7 @@ void TriangleTree<Real>::list_arrays(ArrayList& list, Effect effect)
 }
 
 template <class Real>
-void TriangleTree<Real>::place_triangle(std::size_t n, const Triangle& triangle)
+void TouchTree<Real>::place_triangle(std::size_t n, const Triangle& triangle)
 {
   const auto& [corner, normal] = triangle.at;
   const Vector centre = centre_of(triangle.at);
@@ -178,7 +178,7 @@ void TriangleTree<Real>::place_triangle(std::size_t n, const Triangle& triangle)
 
 // `normal`: a vertex is not near if the component of its normal along this one is above `same_way`.
 template <class Real>
-void TriangleTree<Real>::set_ball(std::size_t ball, const Vector& centre, double farthest, const Vector& normal)
+void TouchTree<Real>::set_ball(std::size_t ball, const Vector& centre, double farthest, const Vector& normal)
 {
   BallBlock<Real>& block = balls_[ball / touch_width];
   const std::size_t lane = ball % touch_width;
@@ -198,7 +198,7 @@ void TriangleTree<Real>::set_ball(std::size_t ball, const Vector& centre, double
 // Sets the balls of the levels above the triangles. Their normals are the axes of cones: a vertex that points the same
 // way as such a cone points the same way as all triangles.
 template <class Real>
-void TriangleTree<Real>::place_blocks()
+void TouchTree<Real>::place_blocks()
 {
   constexpr double infinity = std::numeric_limits<double>::infinity(), rounding = 1 + 1e-5;
   const auto in_lane = [](const Real(&v)[3][touch_width], int lane) {
@@ -235,7 +235,7 @@ void TriangleTree<Real>::place_blocks()
     }
 }
 
-template class TriangleTree<float>;
-template class TriangleTree<double>;
+template class TouchTree<float>;
+template class TouchTree<double>;
 
 }  // namespace frontalis

@@ -18,7 +18,7 @@ namespace frontalis
 /// level the balls around as many blocks. Which triangles form a block is chosen at rest and stays: they are neighbours
 /// that face the same way, so that their ball is small however the tissue moves.
 template <class Real>
-class TriangleTree
+class TouchTree
 {
 public:
   using Vector = physics::Vec3<double>;

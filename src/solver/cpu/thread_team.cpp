@@ -18,6 +18,9 @@ namespace
 constexpr int spins_before_yield = 4000;  // number of polls; threads with equal work usually meet within them
 constexpr int most_threads = 1024;        // upper limit that catches typing errors
 
+/// An exception ends the program, because a thread that left its task would leave the others waiting in a barrier.
+void perform(const std::function<void(int)>& task, int thread) noexcept { task(thread); }
+
 void relax()
 {
 #if defined(__x86_64__)
@@ -69,7 +72,7 @@ void ThreadTeam::run(const std::function<void(int)>& task)
     ++generation_;
   }
   wake_.notify_all();
-  task(0);
+  perform(task, 0);
   barrier();
 }
 
@@ -108,7 +111,7 @@ void ThreadTeam::work(int thread)
         continue;
       task = task_;
     }
-    (*task)(thread);
+    perform(*task, thread);
     barrier();
   }
 }

@@ -89,7 +89,7 @@ struct PairArguments
   void* context;
 };
 
-/// Balls around triangles, or around blocks of balls, one per lane (contact/triangle_tree.hpp).
+/// Balls around triangles, or around blocks of balls, one per lane (contact/touch_tree.hpp).
 template <class Real>
 struct BallBlock
 {

@@ -291,11 +291,11 @@ void Guard::restart()
   g.checked_step = g.solver.time_step();
 }
 
-void Guard::check()
+void Guard::check(const std::function<bool()>& go_on)
 {
   const Instability finding = self_->check();
   if (finding != Instability::none)
-    self_->go_back(finding, self_->solver.controls(), self_->solver.time(), always);
+    self_->go_back(finding, self_->solver.controls(), self_->solver.time(), go_on ? go_on : always);
 }
 
 bool Guard::advance(double seconds, const Controls& target, const std::function<bool()>& go_on)
