@@ -36,7 +36,7 @@ struct Runner::Implementation
   bool paused = false;
   bool reset_wanted = false;
   bool cancel_wanted = false;  ///< ends the call of step() that is under way
-  bool resetting = false;  ///< whether a reset has begun and not ended
+  bool resetting = false;      ///< whether a reset has begun and not ended
   std::uint64_t resets_done = 0;
   std::string reset_error;  ///< why the latest reset failed; empty if it succeeded
   struct StepRequest

@@ -140,9 +140,8 @@ void write_manual(const Findings& findings, const std::string& path)
       "many checks of each case pass, and, in its last column, the largest error of the case as a share of its bound. "
       "Errors and bounds in % are relative. Long tables are folded: click on their captions.\n\n"
       "    ./dev cli verify --markdown doc/verification.md           # writes this page anew\n\n"
-      "The texts are from [verification/text.md](verification/text.md). The figures are from one run of this command, "
-      "or from later runs of "
-      "single cases, which renewed their sections.\n";
+      "The texts are from `doc/verification/text.md`. The figures are from one run of this command, or from "
+      "later runs of single cases, which renewed their sections.\n";
   Table overview({ "case", "checks", "passed", "most of a bound used [%]" });
   std::string sections;
   for (const auto& [name, finding] : findings)
