@@ -1,5 +1,6 @@
 #pragma once
 
+#include "frontalis/physics/number.hpp"
 #include "frontalis/scene/geometry.hpp"
 
 #include <Eigen/Geometry>
@@ -16,7 +17,7 @@ namespace frontalis
 using Eigen::Vector3d;
 using Box = Eigen::AlignedBox3d;
 
-constexpr double pi = 3.14159265358979323846;
+using physics::pi;
 
 inline Vector3d to_vector(const Vector3& a) { return { a[0], a[1], a[2] }; }
 inline Vector3 to_array(const Vector3d& v) { return { v[0], v[1], v[2] }; }

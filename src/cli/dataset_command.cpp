@@ -4,6 +4,7 @@
 #include "cli/progress.hpp"
 
 #include "frontalis/error.hpp"
+#include "frontalis/physics/number.hpp"
 #include "frontalis/render/face_appearance.hpp"
 #include "frontalis/render/png.hpp"
 #include "frontalis/runner/named_controls.hpp"
@@ -27,7 +28,7 @@ namespace
 
 using Json = nlohmann::ordered_json;
 
-constexpr double degree = 3.14159265358979323846 / 180;
+constexpr double degree = physics::pi / 180;
 constexpr double depth_unit = 1e-4;   // depth of one unit of the 16-bit depth images [m]
 constexpr int most_units = 4;         // largest number of action units that act at the same time
 constexpr double most_intensity = 2;  // largest sum of the intensities of action units

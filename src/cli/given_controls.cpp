@@ -3,6 +3,7 @@
 #include "cli/command.hpp"
 
 #include "frontalis/error.hpp"
+#include "frontalis/physics/number.hpp"
 #include "frontalis/solver/rigid_motion.hpp"
 #include "frontalis/study/csv.hpp"
 
@@ -21,7 +22,7 @@ namespace
 
 RigidTransform pose_from(const std::array<double, 6>& values)
 {
-  constexpr double degree = 3.14159265358979323846 / 180;
+  constexpr double degree = physics::pi / 180;
   return rigid_motion({ { values[3] * degree, values[4] * degree, values[5] * degree } },
                       { { 1e-3 * values[0], 1e-3 * values[1], 1e-3 * values[2] } });
 }
@@ -112,7 +113,7 @@ ControlCurve with_bones(const ControlCurve& curve, const std::vector<RigidTransf
   const RigidTransform rest;
   for (std::size_t knot = 0; knot < out.time.size(); ++knot)
     for (std::size_t b = 0; b < targets.size(); ++b)
-      if (targets[b].rotation != rest.rotation || targets[b].translation != rest.translation)
+      if (targets[b] != rest)
         out.controls[knot].bone[b] =
             out.time[knot] < ramp ? interpolate(rest, targets[b], out.time[knot] / ramp) : targets[b];
   return out;

@@ -4,6 +4,7 @@
 #include "cli/progress.hpp"
 
 #include "frontalis/error.hpp"
+#include "frontalis/physics/number.hpp"
 #include "frontalis/render/face_appearance.hpp"
 #include "frontalis/runner/named_controls.hpp"
 #include "frontalis/study/table.hpp"
@@ -136,7 +137,7 @@ Points difference(Points now, const Points& rest)
 RenderMesh mesh_of(const RenderBall& ball)
 {
   constexpr int rings = 24, columns = 48;
-  constexpr double pi = 3.14159265358979323846;
+  using physics::pi;
   RenderMesh mesh;
   for (int ring = 0; ring <= rings; ++ring)
     for (int column = 0; column < columns; ++column)

@@ -1,4 +1,5 @@
 #include "frontalis/error.hpp"
+#include "frontalis/physics/number.hpp"
 #include "frontalis/render/renderer.hpp"
 
 #include <fmt/core.h>
@@ -11,7 +12,7 @@ namespace frontalis
 PinholeCamera camera_with(int width, int height, double field_of_view)
 {
   constexpr int largest = 8192;
-  constexpr double half_turn = 3.14159265358979323846;
+  constexpr double half_turn = physics::pi;
   if (width < 1 || height < 1 || width > largest || height > largest)
     throw Error(fmt::format("a camera of {} x {} pixels; sizes must be from 1 to {}", width, height, largest));
   if (!(field_of_view > 0) || !(field_of_view < half_turn))

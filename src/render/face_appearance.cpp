@@ -1,5 +1,6 @@
 #include "frontalis/render/face_appearance.hpp"
 
+#include "frontalis/physics/number.hpp"
 #include "frontalis/runner/named_controls.hpp"
 
 #include <algorithm>
@@ -226,7 +227,7 @@ RenderMesh iris_cap()
                                       { 0.475, limbus },
                                       { 0.50, white_colour } } };
   constexpr int columns = 72;
-  constexpr double curvature = 1 / 0.8, turn = 2 * 3.14159265358979323846 / columns, above = 0.004;
+  constexpr double curvature = 1 / 0.8, turn = 2 * physics::pi / columns, above = 0.004;
   const auto height = [](double radius) { return std::sqrt(1 - radius * radius * curvature * curvature) / curvature; };
   const double rim = rings.back().radius, base = std::sqrt(1 - rim * rim) - height(rim) + above;
   RenderMesh mesh;

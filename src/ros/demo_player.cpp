@@ -12,11 +12,9 @@ DemoPlayer::DemoPlayer(std::shared_ptr<const Model> model) : model_(std::move(mo
   later_rounds_ = demo_curve(*model_, first_round_.controls.back());
   period_ = first_round_.time.back();
   const RigidTransform rest;
-  const auto away = [&](const RigidTransform& pose)
-  { return pose.rotation != rest.rotation || pose.translation != rest.translation; };
   for (std::size_t bone = 0; bone < model_->bones.size(); ++bone)
     if (std::any_of(first_round_.controls.begin(), first_round_.controls.end(),
-                    [&](const Controls& knot) { return away(knot.bone[bone]); }))
+                    [&](const Controls& knot) { return knot.bone[bone] != rest; }))
       moved_.push_back(bone);
 }
 

@@ -1,5 +1,6 @@
 #include "frontalis/ros/virtual_camera.hpp"
 
+#include "frontalis/physics/number.hpp"
 #include "frontalis/ros/conversions.hpp"
 #include "ros/marker_meshes.hpp"
 #include "ros/parameter_reader.hpp"
@@ -22,7 +23,7 @@ namespace frontalis
 namespace
 {
 
-constexpr double degree = 3.14159265358979323846 / 180;
+constexpr double degree = physics::pi / 180;
 constexpr double patience = 0.3;  // longest time to wait for a transform at the stamp of a frame [s of wall time]
 constexpr double silence = 30;    // time between two warnings that the face sends nothing [s of wall time]
 constexpr float unknown = std::numeric_limits<float>::quiet_NaN();

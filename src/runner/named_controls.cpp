@@ -1,6 +1,7 @@
 #include "frontalis/runner/named_controls.hpp"
 
 #include "frontalis/error.hpp"
+#include "frontalis/physics/number.hpp"
 #include "frontalis/solver/rigid_motion.hpp"
 #include "frontalis/suggestion.hpp"
 
@@ -154,7 +155,7 @@ Controls action_unit_controls(const Model& model, const std::map<std::string, do
 Controls value_controls(const Model& model, const std::map<std::string, double>& values)
 {
   static const std::array<std::string, 6> axes{ { "x", "y", "z", "rx", "ry", "rz" } };
-  constexpr double millimetre = 1e-3, degree = 3.14159265358979323846 / 180;
+  constexpr double millimetre = 1e-3, degree = physics::pi / 180;
   Controls controls = rest_controls(model);
   std::map<std::string, double> activation;
   std::map<std::string, std::array<double, 6>> motions;

@@ -1,6 +1,7 @@
 #include "scene/quantity.hpp"
 
 #include "frontalis/error.hpp"
+#include "frontalis/physics/number.hpp"
 
 #include <algorithm>
 #include <array>
@@ -22,7 +23,7 @@ struct Unit
   double factor;  ///< value of one unit in SI units
 };
 
-constexpr double degree = 3.14159265358979323846 / 180;  // [rad]
+constexpr double degree = physics::pi / 180;  // [rad]
 
 constexpr Unit units[] = {
   { Dimension::length, "m", 1 },        { Dimension::length, "cm", 1e-2 },      { Dimension::length, "mm", 1e-3 },

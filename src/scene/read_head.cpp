@@ -1,6 +1,7 @@
 #include "frontalis/scene/head_template.hpp"
 
 #include "frontalis/error.hpp"
+#include "frontalis/physics/number.hpp"
 #include "scene/sections.hpp"
 
 #include <algorithm>
@@ -349,7 +350,7 @@ HeadTemplate::Joint read_joint(const Node& node)
   // Lengths are per degree in the file and per radian in `joint`.
   joint.slide = fields.optional("slide").vector(Dimension::length, any_number, joint.slide);
   for (double& x : joint.slide)
-    x *= 180 / 3.14159265358979323846;
+    x *= 180 / physics::pi;
   return joint;
 }
 

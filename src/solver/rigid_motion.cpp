@@ -24,7 +24,7 @@ bool is_rigid_motion(const RigidTransform& pose)
 
 RigidTransform interpolate(const RigidTransform& from, const RigidTransform& to, double fraction)
 {
-  if (from.rotation == to.rotation && from.translation == to.translation)
+  if (from == to)
     return to;  // the formula would move it by rounding errors
   // Finds the axis and angle of the rotation from `from` to `to`. Rodrigues' formula then applies the fraction of the
   // angle.

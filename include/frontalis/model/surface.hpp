@@ -27,6 +27,12 @@ struct RigidTransform
   std::array<double, 9> rotation{ { 1, 0, 0, 0, 1, 0, 0, 0, 1 } };  ///< row by row
   std::array<double, 3> translation{ { 0, 0, 0 } };                 ///< [m]
 
+  bool operator==(const RigidTransform& other) const
+  {
+    return rotation == other.rotation && translation == other.translation;
+  }
+  bool operator!=(const RigidTransform& other) const { return !(*this == other); }
+
   /// Applies the rotation to a vector.
   template <class Number>
   std::array<double, 3> turned(const std::array<Number, 3>& v) const

@@ -226,10 +226,15 @@ TriangleMesh import_mesh(const std::string& file, double unit)
     append(*scene, *scene->mRootNode, aiMatrix4x4(), unit, mesh);
   if (mesh.triangles.empty())
     throw Error("mesh file " + file + no_triangles);
+  constexpr double farthest = 1000;  // [m]
   for (const Vector3& v : mesh.vertices)
-    if (!to_vector(v).allFinite())
-      throw failure("mesh file {}: the vertex ({:g}, {:g}, {:g}) is not finite; every coordinate must be finite", file,
-                    v[0] / unit, v[1] / unit, v[2] / unit);
+  {
+    const bool finite = to_vector(v).allFinite();
+    if (!finite || to_vector(v).norm() > farthest)
+      throw failure("mesh file {}: the vertex ({:g}, {:g}, {:g}) {}", file, v[0] / unit, v[1] / unit, v[2] / unit,
+                    finite ? "is more than a kilometre from the origin; correct it, or check the file's unit"
+                           : "is not finite; every coordinate must be finite");
+  }
   return mesh;
 }
 

@@ -302,7 +302,8 @@ void bind_surfaces(const Scene& scene, const PreparedSurfaces& surfaces, const L
     if (bound.too_far > 0)
       throw failure(
           "{}: skin: {} of {} triangles of surface '{}' in the crop have a vertex that no voxel can carry, for example "
-          "at {}: it is farther than {} from the tissue{}; crop the skin to the tissue, or raise its 'extrapolation'",
+          "at {}: it is farther than {} from the tissue{}; crop the skin to the tissue, remove pieces of it that lie "
+          "apart, or raise its 'extrapolation'",
           scene.file, bound.too_far, bound.triangles, scene.skin.surface, place_text(bound.unbound, scene.unit),
           length_text(extrapolation, scene.unit), text_of_body_around(scene, surfaces, bound.unbound));
     model.skin = std::move(bound.mesh);

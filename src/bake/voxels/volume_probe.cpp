@@ -3,6 +3,8 @@
 #include "bake/messages.hpp"
 #include "bake/mesh/mesh_faults.hpp"
 
+#include <algorithm>
+
 namespace frontalis
 {
 namespace
@@ -24,12 +26,27 @@ bool at_depth(const Volumes& volumes, const Volumes::Entry& entry, const Vector3
   return depth >= entry.volume->depth_min && depth <= entry.volume->depth_max;
 }
 
+/// Number of the hole that most of the points lie in front of: for a point that which looks largest from there.
+std::size_t hole_in_front(const std::vector<MeshFaults::Hole>& holes, const std::vector<Vector3d>& points)
+{
+  std::vector<int> votes(holes.size(), 0);
+  for (const Vector3d& p : points)
+  {
+    const auto size = [&](const MeshFaults::Hole& hole) { return hole.length / (hole.centre - p).norm(); };
+    ++votes[std::max_element(holes.begin(), holes.end(),
+                             [&](const auto& a, const auto& b) { return size(a) < size(b); }) -
+            holes.begin()];
+  }
+  return std::max_element(votes.begin(), votes.end()) - votes.begin();
+}
+
 void check_opening(const Scene& scene, const Volumes& volumes, const Volumes::Entry& entry, const PreparedSurface& body)
 {
   const Box box = body.box().intersection(to_box(entry.volume->crop)).intersection(volumes.tissue_box());
   if (body.closed() || box.isEmpty())
     return;
-  int inside = 0, unclear = 0;
+  int inside = 0;
+  std::vector<Vector3d> unclear;
   for (int i = 0; i < probe_samples; ++i)
   {
     const Vector3d p = spread_point(box, i);
@@ -37,19 +54,25 @@ void check_opening(const Scene& scene, const Volumes& volumes, const Volumes::En
     if (w <= 0.5 || !at_depth(volumes, entry, p))
       continue;
     ++inside;
-    unclear += w > clear_winding ? 0 : 1;
+    if (w <= clear_winding)
+      unclear.push_back(p);
   }
-  if (inside > 0 && unclear <= most_unclear * inside)
+  if (inside > 0 && static_cast<double>(unclear.size()) <= most_unclear * inside)
     return;
   const auto holes = find_holes(body.mesh());
-  const std::string where = holes.empty() ? "it has edges at which its triangles do not meet"
-                                          : fmt::format("the largest of its {} holes is {} around, at {}", holes.size(),
-                                                        length_text(holes.front().length, scene.unit),
-                                                        place_text(holes.front().centre, scene.unit));
+  std::string where = "edges at which its triangles do not meet";
+  if (!holes.empty())
+  {
+    const MeshFaults::Hole& hole = holes[hole_in_front(holes, unclear)];
+    where = fmt::format("a hole, {} around, at {}", length_text(hole.length, scene.unit),
+                        place_text(hole.centre, scene.unit));
+  }
   throw failure(
-      "{}: surface '{}' is open there: {:.0f} % of what it should enclose lies in front of a hole; {}: close it, name "
-      "the surface that closes it in 'closed_by', or crop the volume away from it",
-      volumes.place(*entry.volume), body.name(), inside > 0 ? 100.0 * unclear / inside : 100.0, where);
+      "{}: surface '{}' is open there: {:.0f} % of what it should enclose lies in front of {}: close it, name the "
+      "surface "
+      "that closes it in 'closed_by', or crop the volume away from it",
+      volumes.place(*entry.volume), body.name(),
+      inside > 0 ? 100.0 * static_cast<double>(unclear.size()) / inside : 100.0, where);
 }
 
 bool contains(const PreparedSurface& body, const Vector3d& p)

@@ -29,7 +29,7 @@ void add_reaction(Reaction& sum, const Vector& arm, const Vector& force)
 
 double longest_way(const RigidTransform& from, const RigidTransform& to, const std::array<double, 3>& far_corner)
 {
-  if (from.rotation == to.rotation && from.translation == to.translation)
+  if (from == to)
     return 0;
   double turned = 0;
   for (std::size_t i = 0; i < 9; ++i)

@@ -205,8 +205,7 @@ InstabilityReport Guard::Implementation::examined(Instability finding, const Con
 {
   std::vector<bool> moved;
   for (std::size_t b = 0; b < target.bone.size(); ++b)
-    moved.push_back(target.bone[b].rotation != good.bone[b].rotation ||
-                    target.bone[b].translation != good.bone[b].translation);
+    moved.push_back(target.bone[b] != good.bone[b]);
   const double time = solver.time();
   Monitor worst = solver.monitor();
   if (!worst.finite)

@@ -76,7 +76,7 @@ double BoneMotionLimits::edges(const Poses& from, const Poses& to) const
 {
   double farthest = 0;
   for (std::size_t b = 0; b < to.size(); ++b)
-    if (from[b].rotation != to[b].rotation || from[b].translation != to[b].translation)
+    if (from[b] != to[b])
       farthest = std::max(farthest, reach_[b].fastest_way(from[b], to[b]));
   return farthest / shortest_edge_;
 }

@@ -19,11 +19,6 @@ namespace
 using Point = physics::Vec3<double>;
 using Bend = physics::SymmetricMatrix<double>;
 
-bool same(const RigidTransform& a, const RigidTransform& b)
-{
-  return a.rotation == b.rotation && a.translation == b.translation;
-}
-
 template <class Array>
 void put(const Point& p, Array& components, int lane)
 {
@@ -66,8 +61,8 @@ template <class Real>
 void RestrictedNodes<Real>::carry(Carrier& carrier, const Real* const u[3], const ConstraintStep& step)
 {
   const RigidTransform& now = step.bone[carrier.bone];
-  const std::int64_t moves = same(now, step.bone_before[carrier.bone]) ? 0 : 1;
-  if (moves + carrier.moves == 0 && same(now, carrier.pose))
+  const std::int64_t moves = now == step.bone_before[carrier.bone] ? 0 : 1;
+  if (moves + carrier.moves == 0 && now == carrier.pose)
     return;
   const physics::Pose pose = pose_of(now), before = pose_of(step.bone_before[carrier.bone]);
   Block& b = contacts_.blocks[carrier.block];

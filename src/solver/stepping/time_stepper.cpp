@@ -29,13 +29,6 @@ constexpr double swinging = 0.1;          // time for which tissue swings after 
 // During dynamic relaxation, a window ends after this number of steps even if no motion is found.
 constexpr int steps_per_window = 2048;
 
-bool same_poses(const std::vector<RigidTransform>& a, const std::vector<RigidTransform>& b)
-{
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](const RigidTransform& x, const RigidTransform& y)
-                    { return x.rotation == y.rotation && x.translation == y.translation; });
-}
-
 // Adds the wall seconds from its construction to its destruction to a sum.
 class Stopwatch
 {
@@ -204,7 +197,7 @@ void TimeStepper::renew_assembled_estimate(const Controls& asked)
   std::vector<float> most = motion_.activation;
   for (std::size_t m = 0; m < most.size(); ++m)
     most[m] = std::max({ most[m], motion_.controls.activation[m], asked.activation[m] });
-  const bool moving = !same_poses(asked.bone, motion_.controls.bone);
+  const bool moving = asked.bone != motion_.controls.bone;
   if (moving || most != motion_.activation)
     motion_.changed = motion_.time;
   // Tissue that swings on distorts voxels. If these got mass, others are as close to the limit.
@@ -284,7 +277,7 @@ Equilibrium TimeStepper::settle(const Controls& target, double tolerance, double
   const double begin = motion_.time;
   Equilibrium now;
   const auto goes_on = [&] { return !go_on || go_on(now); };
-  while (!same_poses(motion_.controls.bone, target.bone) && motion_.time - begin < seconds)
+  while (motion_.controls.bone != target.bone && motion_.time - begin < seconds)
     if (!advance(traits_.steps_per_observation * time_step(), target, goes_on) || !goes_on())
       return now;
 

@@ -1,5 +1,6 @@
 #include "frontalis/study/faces.hpp"
 
+#include "frontalis/physics/number.hpp"
 #include "frontalis/runner/face_frame.hpp"
 #include "frontalis/runner/named_controls.hpp"
 #include "frontalis/solver/guard.hpp"
@@ -16,7 +17,7 @@ constexpr double frame_seconds = 0.01;
 constexpr double settled_share = 0.03;  // fraction of the final displacement within which a landmark has settled
 constexpr double least_way = 0.5e-3;    // a settling time is found only for landmarks that move farther [m]
 constexpr double still_way = 1e-3;      // allowed motion of landmarks that do not move in people [m]
-constexpr double largest_angle = 25 * 3.14159265358979323846 / 180;
+constexpr double largest_angle = 25 * physics::pi / 180;
 
 using Places = std::vector<std::array<float, 3>>;
 
@@ -160,7 +161,7 @@ std::vector<FaceRow> measure_expression(const std::shared_ptr<const Model>& mode
 
 Table faces_table(const std::vector<FaceRow>& rows, bool all)
 {
-  constexpr double millimetres = 1e3, degrees = 180 / 3.14159265358979323846;
+  constexpr double millimetres = 1e3, degrees = 180 / physics::pi;
   Table table({ "expression", "landmark", "forward [mm]", "outward [mm]", "up [mm]", "size [mm]", "people [mm]",
                 "sd [mm]", "angle [deg]", "settled [s]", "verdict", "mark", "source" });
   const auto hundredths = [](double value) { return std::round(100 * value) / 100; };

@@ -1,5 +1,6 @@
 #include "frontalis/study/calibrate.hpp"
 
+#include "frontalis/physics/number.hpp"
 #include "frontalis/solver/rigid_motion.hpp"
 #include "frontalis/study/csv.hpp"
 #include "frontalis/study/table.hpp"
@@ -24,11 +25,11 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double range_margin = 1.2;         // measured range of a motion, divided by the range in the poses
-constexpr double deviation = 1e-4;           // standard deviation of measured places of landmarks [m]
-constexpr double gain_deviation = 1;         // standard deviation of gains from 1, a weak preference
-constexpr int gauss_newton_iterations = 10;  // number of Gauss-Newton iterations
-constexpr double degree = 3.14159265358979323846 / 180;  // [rad]
+constexpr double range_margin = 1.2;          // measured range of a motion, divided by the range in the poses
+constexpr double deviation = 1e-4;            // standard deviation of measured places of landmarks [m]
+constexpr double gain_deviation = 1;          // standard deviation of gains from 1, a weak preference
+constexpr int gauss_newton_iterations = 10;   // number of Gauss-Newton iterations
+constexpr double degree = physics::pi / 180;  // [rad]
 
 // The recorded poses as vectors, and what the latest simulation has shown of each.
 struct Poses
