@@ -111,6 +111,42 @@ std::string check_size(const Scene& scene, const Volumes& volumes, BakeMonitor& 
   return {};
 }
 
+/// Says of a volume outside of the tissue which of the tissue's conditions most of it fails, or returns an empty text.
+std::string why_outside(const Volumes& volumes, const Volumes::Entry& volume, const Box& extent)
+{
+  constexpr int points = 1000;
+  std::map<Membership, int> found;
+  for (int i = 0; i < points && !extent.isEmpty(); ++i)
+  {
+    const Vector3d p = spread_point(extent, i);
+    if (std::none_of(volume.inside.begin(), volume.inside.end(),
+                     [&](std::size_t b) { return volumes.body(b).tree().winding_number(p) > 0.5; }))
+      continue;
+    for (const Volumes::Entry& entry : volumes.entries())
+      if (entry.volume->tissue)
+        ++found[membership(volumes, entry, p)];
+  }
+  const auto most =
+      std::max_element(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  if (most == found.end())
+    return {};
+  switch (most->first)
+  {
+    case Membership::cropped:
+      return "; most of it lies outside of the tissue's 'crop'";
+    case Membership::beyond:
+      return "; most of it lies outside of the skin, or of what else the tissue is 'inside' of";
+    case Membership::excluded:
+      return "; most of it lies in bone, or in what else the tissue is 'outside' of";
+    case Membership::wrong_depth:
+      return "; most of it lies deeper, or less deep, than the tissue's 'within' allows";
+    case Membership::hidden:
+      return "; most of it lies behind bone";
+    default:
+      return {};
+  }
+}
+
 /// Throws Error if a volume lies outside the tissue, and reports how much of each muscle was clipped.
 void check_volumes(const Scene& scene, const Volumes& volumes, const Voxels& voxels, BakeMonitor& monitor)
 {
@@ -134,13 +170,14 @@ void check_volumes(const Scene& scene, const Volumes& volumes, const Voxels& vox
                   "check these, the units and the voxel size");
     if (size <= 0)
       throw failure(
-          "{}: {}, or is thinner than the sample spacing{}; check its surfaces, their length units, its crop "
+          "{}: {}, or is thinner than the sample spacing{}{}; check its surfaces, their length units, its crop "
           "and the voxel size",
           volumes.place(*entry.volume),
           muscle.empty() ? "no point of it lies in the tissue" : muscle + " lies wholly outside the tissue",
           extent.isEmpty() ? ""
                            : ": its surfaces span " + box_text(extent, scene.unit) + ", the tissue " +
-                                 box_text(volumes.tissue_box(), scene.unit));
+                                 box_text(volumes.tissue_box(), scene.unit),
+          why_outside(volumes, entry, extent));
     if (muscle.empty() || entry.closed_by || entry.inside.empty())
       continue;
     double whole = 0, area = 0;

@@ -15,7 +15,7 @@ PosedFace::PosedFace(std::shared_ptr<const Model> model, const SolverSettings& s
     : model_(std::move(model)), solver_(make_solver(model_, settings)), guard_(*solver_, model_)
 {
   if (model_->skin.vertices.empty())
-    throw Error("the model has no skin");
+    throw Error("the model has no skin; bake it again from a scene whose 'skin' has a surface");
   read_skin(rest_);
 }
 
