@@ -27,13 +27,13 @@ int attribute(cudaDeviceAttr which)
 int from_environment(const char* name, int otherwise, int least, int most)
 {
   const char* const text = std::getenv(name);
-  if (text == nullptr)
+  if (text == nullptr || *text == '\0')
     return otherwise;
   int value = 0;
   const char* const end = text + std::strlen(text);
   const auto read = std::from_chars(text, end, value);
   if (read.ec != std::errc() || read.ptr != end)
-    throw Error(fmt::format("{} is '{}'; it must be a whole number, {} to {}", name, text, least, most));
+    throw Error(fmt::format("{} is '{}'; it must be a whole number", name, text));
   return std::clamp(value, least, most);
 }
 

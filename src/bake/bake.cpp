@@ -122,9 +122,14 @@ std::string why_outside(const Volumes& volumes, const Volumes::Entry& volume, co
     if (std::none_of(volume.inside.begin(), volume.inside.end(),
                      [&](std::size_t b) { return volumes.body(b).tree().winding_number(p) > 0.5; }))
       continue;
+    std::set<Membership> here;
     for (const Volumes::Entry& entry : volumes.entries())
       if (entry.volume->tissue)
-        ++found[membership(volumes, entry, p)];
+        here.insert(membership(volumes, entry, p));
+    if (here.count(Membership::inside) > 0)
+      here = { Membership::inside };
+    for (const Membership failed : here)
+      ++found[failed];
   }
   const auto most =
       std::max_element(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
@@ -137,7 +142,7 @@ std::string why_outside(const Volumes& volumes, const Volumes::Entry& volume, co
     case Membership::beyond:
       return "; most of it lies outside of the skin, or of what else the tissue is 'inside' of";
     case Membership::excluded:
-      return "; most of it lies in bone, or in what else the tissue is 'outside' of";
+      return "; most of it lies in bone, or in what else the tissue is 'outside' of or 'without'";
     case Membership::wrong_depth:
       return "; most of it lies deeper, or less deep, than the tissue's 'within' allows";
     case Membership::hidden:

@@ -42,16 +42,21 @@ void check_magnitudes(const Scene& scene, const Model& model, BakeMonitor& monit
 void check_bone_centres(const Scene& scene, BakeMonitor& monitor)
 {
   std::set<std::string> told;
+  const auto check = [&](const std::string& what, const std::vector<BonePose>& bones)
+  {
+    for (const BonePose& bone : bones)
+      if (to_vector(bone.turn).norm() > 0 && scene.bone_centres.count(bone.bone) == 0 && told.insert(bone.bone).second)
+        monitor.warn(
+            "{}: {} turns bone '{}' about the origin of the face frame, because the bone has no centre; give it one, "
+            "as "
+            "in 'bones: {{{}: {{centre: [x, y, z]}}}}'",
+            scene.file, what, bone.bone, bone.bone);
+  };
   for (const auto* poses : { &scene.expressions, &scene.action_units })
     for (const auto& [name, pose] : *poses)
-      for (const BonePose& bone : pose.bones)
-        if (to_vector(bone.turn).norm() > 0 && scene.bone_centres.count(bone.bone) == 0 &&
-            told.insert(bone.bone).second)
-          monitor.warn(
-              "{}: '{}' turns bone '{}' about the origin of the face frame, because the bone has no centre; give it "
-              "one, "
-              "as in 'bones: {{{}: {{centre: [x, y, z]}}}}'",
-              scene.file, name, bone.bone, bone.bone);
+      check("'" + name + "'", pose.bones);
+  for (const DemoPhase& phase : scene.demo)
+    check("the demo", phase.bones);
 }
 
 }  // namespace frontalis

@@ -143,19 +143,6 @@ nlohmann::ordered_json json_of(const Wrinkles& wrinkles)
            { "spacing_m", wrinkles.spacing }, { "direction", wrinkles.direction }, { "furrows", furrows } };
 }
 
-}  // namespace
-
-void print_set_up(const Model& model, const RunSummary& summary)
-{
-  fmt::print("backend            {}\n", summary.backend);
-  fmt::print("voxels             {} of {:g} x {:g} x {:g} mm\n", model.voxels.size(), model.spacing[0] * 1e3,
-             model.spacing[1] * 1e3, model.spacing[2] * 1e3);
-  fmt::print("nodes              {}, of which rigid {}, sliding {}\n", model.nodes.size(), model.rigid.size(),
-             model.sliding.size());
-  fmt::print("time step          {:.3f} us\n", summary.time_step * 1e6);
-  std::fflush(stdout);
-}
-
 // Warns of voxels that are turned inside out.
 void print_inverted(const Model& model, const Monitor& monitor)
 {
@@ -172,11 +159,25 @@ void print_inverted(const Model& model, const Monitor& monitor)
                                  { return std::find(corners.begin(), corners.end(), n.node) != corners.end(); });
   const bool named = held != model.rigid.end() && held->constraint >= 0;
   fmt::print(
-      "warning            {} voxels are turned inside out at the end, the worst at ({:.1f}, {:.1f}, {:.1f}) mm in the "
-      "scene{}: move the face less, or let more tissue glide on bone\n",
-      monitor.inverted, place[0], place[1], place[2],
-      named ? fmt::format(", where constraint '{}' holds tissue", model.constraints[std::size_t(held->constraint)])
-            : "");
+      "warning            {} turned inside out at the end, the worst at ({:.1f}, {:.1f}, {:.1f}) mm in the scene{}\n",
+      monitor.inverted == 1 ? "1 voxel is" : fmt::format("{} voxels are", monitor.inverted), place[0], place[1],
+      place[2],
+      named ? fmt::format(", where constraint '{}' holds tissue: let it glide there, or move the face less",
+                          model.constraints[std::size_t(held->constraint)])
+            : ": move the face less");
+}
+
+}  // namespace
+
+void print_set_up(const Model& model, const RunSummary& summary)
+{
+  fmt::print("backend            {}\n", summary.backend);
+  fmt::print("voxels             {} of {:g} x {:g} x {:g} mm\n", model.voxels.size(), model.spacing[0] * 1e3,
+             model.spacing[1] * 1e3, model.spacing[2] * 1e3);
+  fmt::print("nodes              {}, of which rigid {}, sliding {}\n", model.nodes.size(), model.rigid.size(),
+             model.sliding.size());
+  fmt::print("time step          {:.3f} us\n", summary.time_step * 1e6);
+  std::fflush(stdout);
 }
 
 void print_result(const Model& model, const RunSummary& summary)

@@ -18,7 +18,7 @@ void check_order(const Model& model)
 {
   for (const std::int32_t voxels : model.size)
     if (voxels < 0 || voxels > most_along_axis)
-      throw Error(fmt::format("size: {} voxels; a grid has at most {} along an axis", model.size, most_along_axis));
+      throw Error(fmt::format("size: {} voxels; a grid has 0 to {} along each axis", model.size, most_along_axis));
   if (double(model.size[0]) * double(model.size[1]) > most_in_plane)
     throw Error(fmt::format("size: {} voxels; a plane of a grid has at most {:.0f}", model.size, most_in_plane));
   for (std::size_t e = 0; e < model.voxels.size(); ++e)

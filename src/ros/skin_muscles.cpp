@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <utility>
+#include <unordered_map>
 
 namespace frontalis
 {
@@ -15,11 +15,10 @@ SkinMuscles::SkinMuscles(const Model& model, double depth)
   const auto& size = model.size;
   const auto place_of = [&](const std::array<std::int32_t, 3>& v)
   { return (static_cast<std::size_t>(v[2]) * size[1] + v[1]) * size[0] + v[0]; };
-  // Where a gap parts tissue, two voxels have the same place: the second in `voxel_at`, the first in `other`.
-  std::vector<std::int32_t> voxel_at(static_cast<std::size_t>(size[0]) * size[1] * size[2], -1);
-  std::vector<std::int32_t> other(model.voxels.size(), -1);
+  // Where a gap parts tissue, two voxels have the same place.
+  std::unordered_multimap<std::size_t, std::int32_t> voxels_at;
   for (std::size_t e = 0; e + 1 < model.fibre_begin.size(); ++e)
-    other[e] = std::exchange(voxel_at[place_of(rest_place(model, model.voxels[e]))], static_cast<std::int32_t>(e));
+    voxels_at.emplace(place_of(rest_place(model, model.voxels[e])), static_cast<std::int32_t>(e));
 
   RenderMesh mesh;
   mesh.triangles = model.skin.triangles;
@@ -43,8 +42,11 @@ SkinMuscles::SkinMuscles(const Model& model, double depth)
         at[axis] = static_cast<std::int32_t>(std::floor(x / model.spacing[axis]));
         inside = inside && at[axis] >= 0 && at[axis] < size[axis];
       }
-      for (std::int32_t e = inside ? voxel_at[place_of(at)] : -1; e >= 0; e = other[static_cast<std::size_t>(e)])
-        for (auto fibre = model.fibre_begin[e]; fibre < model.fibre_begin[e + 1]; ++fibre)
+      if (!inside)
+        continue;
+      const auto here = voxels_at.equal_range(place_of(at));
+      for (auto voxel = here.first; voxel != here.second; ++voxel)
+        for (auto fibre = model.fibre_begin[voxel->second]; fibre < model.fibre_begin[voxel->second + 1]; ++fibre)
         {
           const auto weight = static_cast<double>(model.fibre_weight[fibre]);
           if (weight <= 0)

@@ -270,7 +270,7 @@ void Runner::Implementation::serve_switch(std::unique_lock<std::mutex>& lock)
           [this]
           {
             const std::lock_guard<std::mutex> here(mutex);
-            return !stop;
+            return !stop && !reset_wanted && !cancel_wanted;
           });
     }
     catch (const Error& error)

@@ -42,7 +42,7 @@ Region read_region(const Node& node)
   for (std::size_t i = 0; i < 3; ++i)
     if (region.lower[i] >= region.upper[i])
     {
-      node.fault("the {0} of 'lower' is not below that of 'upper'; must be less", "xyz"[i]);
+      node.fault("the {0} of 'lower' must be less than that of 'upper'", "xyz"[i]);
       break;
     }
   return region;

@@ -312,8 +312,8 @@ Mapping::~Mapping()
     return;
   for (const auto& [key, node] : pairs_)
     if (!contains(asked_, key))
-      node.fault(key.find_first_not_of("0123456789") == std::string::npos
-                     ? "a number with a comma? Numbers have decimal points, as in 1.5"
+      node.fault(!key.empty() && key[0] >= '0' && key[0] <= '9'
+                     ? "no key; if this is a number with a comma, write a decimal point, as in 1.5"
                      : "unknown key; allowed are " + list_with_suggestion(key, asked_));
 }
 

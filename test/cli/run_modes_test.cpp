@@ -178,6 +178,11 @@ TEST_F(RunModes, a_movie_that_cannot_be_made_is_an_error_before_the_motion)
                                              "--frames", folder / "frames", "--movie", folder / "a.gif" });
   EXPECT_EQ(result.code, 1);
   expect_contains(result.errors, "a GIF cannot have 30 frames per second");
+  const ProgramResult other = run_program({ "run", std::string(FRONTALIS_SOURCE_DIRECTORY) + "/test/ros/small.yaml",
+                                            "--seconds", "0.1", "--movie", folder / "a.mp4" });
+  EXPECT_EQ(other.code, 1);
+  expect_contains(other.errors, "only NAME.gif or a folder is written");
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.mp4"));
   EXPECT_EQ(text_of(folder / "frames/skin_0000.ply"), "of an earlier run");
 }
 

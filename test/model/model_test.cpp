@@ -76,6 +76,17 @@ TEST(BuildNodes, RefusesVoxelsOutOfOrderTwiceOrOutside)
   EXPECT_THROW(build_nodes(model), Error);
 }
 
+TEST(BuildNodes, RefusesSizesThatNoGridHas)
+{
+  Model model = full_block(1, 1, 1);
+  model.size = { -1, 1, 1 };
+  EXPECT_THROW(build_nodes(model), Error);
+  model.size = { 1, 1, 1 << 21 };
+  EXPECT_THROW(build_nodes(model), Error);
+  model.size = { 1 << 20, 1 << 20, 1 };
+  EXPECT_THROW(build_nodes(model), Error);
+}
+
 TEST(CheckModel, AcceptsAFullModelAndNamesTheArrayAtFault)
 {
   const Model good = full_block(2, 2, 2);

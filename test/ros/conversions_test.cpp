@@ -369,5 +369,17 @@ TEST(SkinMuscles, MixesTheActivationsOfTheMusclesBelow)
   EXPECT_EQ(found[2], 0) << "a vertex on the far border has no voxel below it";
 }
 
+TEST(SkinMuscles, CountBothVoxelsOfAPartedPlace)
+{
+  Model model = small_model();
+  model.size = { { 1, 1, 3 } };
+  model.voxels = { { { 0, 0, 0 } }, { { 0, 0, 2 } } };
+  model.flaps = { { 2, 2 } };
+  model.fibre_begin = { 0, 1, 2 };
+  model.fibre_muscle = { 0, 1 };
+  model.fibre_weight = { 0.6F, 0.2F };
+  EXPECT_NEAR(SkinMuscles(model).activation({ 1, 0.5F })[0], 0.875, 1e-6);
+}
+
 }  // namespace
 }  // namespace frontalis

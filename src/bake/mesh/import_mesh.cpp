@@ -148,7 +148,7 @@ std::string unreadable_vertex(const std::string& file, const std::string& vertex
   return {};
 }
 
-/// What an OBJ file is in truth, by its first bytes and its size, or an empty text.
+/// Says which other format a file named .obj has, by its first bytes, or returns an empty text.
 std::string format_of_named_obj(const std::string& file)
 {
   std::ifstream stream(file, std::ios::binary);
@@ -161,9 +161,10 @@ std::string format_of_named_obj(const std::string& file)
   const bool wide = begins("\xff\xfe") || begins("\xfe\xff");  // UTF-16, which the importer reads
   const char* const format = begins("ply")                                    ? "a PLY"
                              : begins("solid")                                ? "an STL"
-                             : begins("\x1f\x8b")                             ? "a compressed"
                              : !wide && start.find('\0') != std::string::npos ? "a binary"
                                                                               : "";
+  if (begins("\x1f\x8b"))
+    return "is compressed; unpack it first";
   return *format == '\0' ? "" : fmt::format("is {} file and no OBJ file; give it the name of its format", format);
 }
 

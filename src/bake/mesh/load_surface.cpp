@@ -66,7 +66,7 @@ TriangleMesh import_surface(const Surface& surface)
     cage = with_mirror_image(cage, surface.mirror);
   constexpr double most_triangles = 2e7;  // the bake would take several minutes and 20 GB
   const double triangles = 2 * static_cast<double>(cage.faces.size()) * std::pow(4, surface.subdivide);
-  if (triangles > most_triangles)
+  if (surface.subdivide > 0 && triangles > most_triangles)
     throw failure(
         "'subdivide: {}' makes about {:.0f} million triangles of {} faces, at most {:.0f} million are allowed; "
         "give a smaller number",

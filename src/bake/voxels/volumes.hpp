@@ -106,9 +106,10 @@ enum class Membership
 /// Membership of a single point. Slow, but independent of the optimised sampling of voxels, so that it can check that.
 Membership membership(const Volumes& volumes, const Volumes::Entry& entry, const Vector3d& p);
 
-/// Throws Error, with the length and position of the largest hole, if the holes of a volume's surface do harm: for more
-/// than a tenth of the points inside, the winding number is below 3/4, because a hole is near. Pinholes, gaps and holes
-/// far from the volume (the neck of a head whose forehead is baked) are harmless.
+/// Throws Error if the holes of a volume's surface do harm: for more than a tenth of the points inside, the winding
+/// number is below 3/4, because a hole is near. The error has the length and position of the hole in front of which
+/// most of these points lie. Pinholes, gaps and holes far from the volume (the neck of a head whose forehead is baked)
+/// are harmless.
 void check_openings(const Scene& scene, const Volumes& volumes);
 
 }  // namespace frontalis

@@ -12,7 +12,8 @@
 namespace frontalis
 {
 
-/// All kernels for an instruction set. Only cpu_kernel_*.cpp, which are compiled for theirs, may include this file.
+/// All kernels for an instruction set. Only the files cpu_kernel_*.cpp may include this one: each is compiled for its
+/// instruction set.
 template <class Arch>
 CpuKernelChoice kernels_of(const char* name)
 {
