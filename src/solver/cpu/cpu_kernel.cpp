@@ -5,11 +5,16 @@
 #include <cstdlib>
 #include <string>
 
+// The solver with mutations has the baseline's kernels alone.
+#if defined(__x86_64__) && !defined(FRONTALIS_MUTATIONS)
+#define FRONTALIS_WIDE_KERNELS
+#endif
+
 namespace frontalis
 {
 
 CpuKernelChoice cpu_kernel_baseline(const char* name);
-#if defined(__x86_64__)
+#if defined(FRONTALIS_WIDE_KERNELS)
 CpuKernelChoice cpu_kernel_avx2(const char* name);
 CpuKernelChoice cpu_kernel_avx512(const char* name);
 #endif
@@ -18,7 +23,7 @@ CpuKernelChoice choose_cpu_kernel()
 {
   const char* variable = std::getenv("FRONTALIS_INSTRUCTION_SET");
   const std::string wanted = variable == nullptr ? "" : variable;
-#if defined(__x86_64__)
+#if defined(FRONTALIS_WIDE_KERNELS)
   const bool avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
                       __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512cd");
   const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
