@@ -48,8 +48,7 @@ void check_bone_centres(const Scene& scene, BakeMonitor& monitor)
       if (to_vector(bone.turn).norm() > 0 && scene.bone_centres.count(bone.bone) == 0 && told.insert(bone.bone).second)
         monitor.warn(
             "{}: {} turns bone '{}' about the origin of the face frame, because the bone has no centre; give it one, "
-            "as "
-            "in 'bones: {{{}: {{centre: [x, y, z]}}}}'",
+            "as in 'bones: {{{}: {{centre: [x, y, z]}}}}'",
             scene.file, what, bone.bone, bone.bone);
   };
   for (const auto* poses : { &scene.expressions, &scene.action_units })

@@ -69,8 +69,7 @@ void check_opening(const Scene& scene, const Volumes& volumes, const Volumes::En
   }
   throw failure(
       "{}: surface '{}' is open there: {:.0f} % of what it should enclose lies in front of {}: close it, name the "
-      "surface "
-      "that closes it in 'closed_by', or crop the volume away from it",
+      "surface that closes it in 'closed_by', or crop the volume away from it",
       volumes.place(*entry.volume), body.name(),
       inside > 0 ? 100.0 * static_cast<double>(unclear.size()) / inside : 100.0, where);
 }
