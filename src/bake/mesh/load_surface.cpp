@@ -42,9 +42,8 @@ TriangleMesh make_any(const Shape& shape, double unit)
   }
 }
 
-PolygonMesh polygons_of(TriangleMesh mesh)
+PolygonMesh polygons_of(const TriangleMesh& mesh)
 {
-  join_vertices(mesh);
   PolygonMesh polygons;
   polygons.group_names = { "default" };
   for (const Vector3& v : mesh.vertices)
