@@ -81,6 +81,18 @@ void FaceInputs::reset(Runner& running)
 void FaceInputs::play(Runner& running, double time)
 {
   const std::lock_guard<std::mutex> lock(mutex_);
+  play_at(running, time);
+}
+
+void FaceInputs::play(Runner& running)
+{
+  const std::lock_guard<std::mutex> lock(mutex_);
+  play_at(running, now_());
+}
+
+// The caller must hold the mutex.
+void FaceInputs::play_at(Runner& running, double time)
+{
   if (&running.model() != model_.get())
     return;  // the runner of another scene is about to replace this one
   if (demo_playing_)

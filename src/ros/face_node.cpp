@@ -1,7 +1,6 @@
 #include "frontalis/ros/face_node.hpp"
 
 #include "frontalis/error.hpp"
-#include "frontalis/model/effects.hpp"
 #include "frontalis/model/model_file.hpp"
 #include "frontalis/ros/model_source.hpp"
 #include "frontalis/runner/profile_report.hpp"
@@ -27,7 +26,6 @@ constexpr double play_period = 1.0 / 30;     // time between two updates of chan
 constexpr double repetition_period = 0.5;    // a face that stands still repeats its frame after this time [s]
 constexpr double diagnostics_period = 1.0;   // time between two diagnostic messages without ~diagnostic_period [s]
 constexpr double longest_period = 1e6;       // largest ~diagnostic_period [s]; ROS can count durations up to 2e9 s
-constexpr double stalled_after = 3.0;        // diagnostics warn if there is no frame for this time [s]
 constexpr double speed_settled_after = 3.0;  // the real-time factor is logged after this time [s]
 
 // roslaunch starts nodes in ROS_HOME, so that a path that was meant relative to a shell's folder is not found.
@@ -87,12 +85,12 @@ FaceNode::FaceNode(const ros::NodeHandle& handle, const ros::NodeHandle& private
   fit_ = std::make_unique<FitAction>(
       private_handle_, [this] { return fitted_face(); },
       [this](const auto& muscles, const auto& activations)
-      { inputs_.set("fit_activation", ros::Time(), muscles, activations); });
+      { return inputs_.set("fit_activation", ros::Time(), muscles, activations); });
 
   frame_timer_ = private_handle_.createWallTimer(ros::WallDuration(play_period),
                                                  [this](const ros::WallTimerEvent&) { repeat_frame_and_play(); });
   diagnostics_timer_ = private_handle_.createWallTimer(ros::WallDuration(diagnostic_period_),
-                                                       [this](const ros::WallTimerEvent&) { updater_.force_update(); });
+                                                       [this](const ros::WallTimerEvent&) { send_diagnostics(); });
   loader_ = std::thread([this] { load(); });
 }
 
@@ -157,7 +155,8 @@ void FaceNode::replace_face(const FaceParameters& parameters)
   settings.wanted_field = [this] { return publisher_.wanted_field(); };
   settings.wants_displacements = [this] { return publisher_.shows_muscles(); };
   // ROS waits for the callback of a long ~step before it lets this object be destroyed.
-  settings.ends_steps = [this] { return stopping_ || ros::isShuttingDown(); };
+  // A ~step that begins while another face takes the place of this one must not go on either.
+  settings.ends_steps = [this, face] { return stopping_ || ros::isShuttingDown() || present_face_ > face; };
   settings.wants_bone_forces = [this] { return publisher_.shows_bone_forces(); };
   settings.on_progress = [this, face](const Frame& frame) { on_progress(frame, face); };
   const auto made =
@@ -186,7 +185,7 @@ void FaceNode::replace_face(const FaceParameters& parameters)
   before.reset();
   paused_ = made->paused();
   // a reset publishes the face at rest, also in lock-step
-  made->reset();
+  inputs_.reset(*made);
   {
     // the new runner has all effects switched on
     const boost::recursive_mutex::scoped_lock lock(server_mutex_);
@@ -207,6 +206,8 @@ void FaceNode::replace_face(const FaceParameters& parameters)
 void FaceNode::load()
 {
   const std::lock_guard<std::mutex> one_at_a_time(loading_mutex_);
+  if (runner())
+    return;  // ~load_scene was faster
   try
   {
     replace_face(read_parameters(private_handle_));
@@ -240,11 +241,12 @@ void FaceNode::on_frame(const Frame& frame, std::uint64_t face)
   has_frame_ = true;
   last_frame_ = last_published_ = ros::WallTime::now();
   log_speed_once();
-  frame_finite_ = publisher_.publish(frame_, ros::Time::now(), paused_);
+  frame_finite_ = publisher_.publish(frame_, ros::Time::now(), stands());
   if (!frame_finite_)
   {
     ++frames_dropped_;
-    ROS_ERROR_STREAM_THROTTLE(5, name_ << ": frame " << frame_.sequence << " is not finite and was not published");
+    if (frame_warning_.passes(5))
+      ROS_ERROR_STREAM(name_ << ": frame " << frame_.sequence << " is not finite and was not published");
   }
 }
 
@@ -253,9 +255,11 @@ void FaceNode::on_progress(const Frame& frame, std::uint64_t face)
   const std::lock_guard<std::mutex> lock(frame_mutex_);
   if (face != present_face_)
     return;
+  // Commands are played at this time, also if frames are rare.
+  time_ = frame.time;
   // The frame before is not sent again now, because its state is older.
   last_published_ = ros::WallTime::now();
-  publisher_.publish_state(frame, ros::Time::now(), paused_);
+  publisher_.publish_state(frame, ros::Time::now(), stands());
 }
 
 // logs the real-time factor once it has settled
@@ -306,86 +310,21 @@ void FaceNode::repeat_frame_and_play()
     steps_by_itself = parameters_.runner.pace != Pace::lock_step;
     // In a lock-step replay in simulated time, each frame must be published only once.
     const bool once = ros::Time::isSimTime() && !steps_by_itself;
-    if (!once && (ros::WallTime::now() - last_published_).toSec() > repetition_period)
+    const double rarely = running ? 2 / running->frame_rate() : 0;
+    if (!once && (ros::WallTime::now() - last_published_).toSec() > std::max(repetition_period, rarely))
     {
       last_published_ = ros::WallTime::now();
       // A face that stands still publishes its frame again, for late subscribers.
       if (runner_ && has_frame_ && frame_finite_)
-        publisher_.publish(frame_, ros::Time::now(), paused_);
+        publisher_.publish(frame_, ros::Time::now(), stands());
       // This reports a model that could not be made, not one that is still being made.
       if (!load_fault_.empty())
         publisher_.publish_fault(load_fault_, ros::Time::now());
     }
   }
   if (running && !paused_ && steps_by_itself)
-    inputs_.play(*running, time_);
+    inputs_.play(*running);
   show_caption();
-}
-
-void FaceNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status)
-{
-  using diagnostic_msgs::DiagnosticStatus;
-  std::string reason;
-  const auto running = runner(&reason);
-  if (!running)
-  {
-    const std::lock_guard<std::mutex> lock(runner_mutex_);
-    status.summary(load_fault_.empty() ? DiagnosticStatus::WARN : DiagnosticStatus::ERROR, reason);
-    return;
-  }
-
-  std::unique_lock<std::mutex> lock(frame_mutex_);
-  const bool moves_by_itself = parameters_.runner.pace != Pace::lock_step && !paused_;
-  const double silence = (ros::WallTime::now() - last_frame_).toSec();
-  const bool lacks_clock = ros::Time::isSimTime() && ros::Time::now().isZero();
-  if (lacks_clock && moves_by_itself && has_frame_)
-    ROS_WARN_STREAM_ONCE(name_ << ": /use_sim_time is true, but nobody publishes /clock: all messages have the time 0, "
-                                  "which rviz, tf2 and cameras do not show");
-  if (frame_.failed)
-    status.summary(DiagnosticStatus::ERROR, frame_.failure);
-  else if (!frame_finite_)
-    status.summary(DiagnosticStatus::ERROR, "the latest frame is not finite and was not published; call ~reset");
-  else if (moves_by_itself && (!has_frame_ || silence > stalled_after))
-    status.summaryf(DiagnosticStatus::WARN, "no frame for more than %g seconds", stalled_after);
-  else if (lacks_clock && moves_by_itself)
-    status.summary(DiagnosticStatus::WARN, "/use_sim_time is true, but nobody publishes /clock");
-  else if (!moves_by_itself)
-    status.summary(DiagnosticStatus::OK, parameters_.runner.pace == Pace::lock_step ? "waiting for ~step" : "paused");
-  else if (parameters_.runner.pace == Pace::real_time && frame_.time > 1 &&
-           frame_.real_time_factor < parameters_.real_time_factor_warning)
-    status.summaryf(DiagnosticStatus::WARN, "too slow: the real-time factor is %.3g, below %.3g",
-                    frame_.real_time_factor, parameters_.real_time_factor_warning);
-  else
-    status.summaryf(DiagnosticStatus::OK, "running with a real-time factor of %.3g", frame_.real_time_factor);
-
-  status.add("backend", running->description());
-  status.add("accuracy", measured_profile(running->model()));
-  status.add("speed", speed_report_);
-  status.add("simulated time [s]", frame_.time);
-  status.add("real-time factor", frame_.real_time_factor);
-  status.add("time step [s]", frame_.time_step);
-  status.add("steps", frame_.steps);
-  status.add("kinetic energy [J]", frame_.monitor.kinetic);
-  status.add("internal energy [J]", frame_.monitor.internal);
-  status.add("hourglass energy [J]", frame_.monitor.hourglass);
-  status.add("smallest volume ratio", frame_.monitor.worst_jacobian);
-  status.add("inverted voxels", frame_.monitor.inverted);
-  status.add("nodes past the rim of their surface", frame_.monitor.past_rim);
-  status.add("returns to an earlier stable state", frame_.guard.rollbacks);
-  if (frame_.guard.rollbacks > 0)
-    status.add("reason of the latest return", words_for(frame_.guard.latest));
-  status.add("frames not published as not finite", frames_dropped_);
-  if (frame_.seconds_per_step > 0)
-    status.add("wall time per step [us]", 1e6 * frame_.seconds_per_step);
-  status.add("memory of the solver [MB]", static_cast<double>(frame_.solver_bytes) / 1e6);
-  lock.unlock();
-  const EffectSet of_model = effects_of(running->model()), switched_on = running->effects();
-  std::vector<std::string> off;
-  for (const Effect effect : every_effect())
-    if (of_model.has(effect) && !switched_on.has(effect))
-      off.push_back(name_of(effect));
-  status.add("effects switched off", off.empty() ? "none" : fmt::format("{}", fmt::join(off, ", ")));
-  inputs_.diagnose(status);
 }
 
 }  // namespace frontalis

@@ -68,6 +68,7 @@ void FacePublisher::start(std::shared_ptr<const Model> model, const std::string&
   model_ = std::move(model);
   wrinkles_->start(model_, wrinkles_in);
   face_frame_ = face_frame;
+  sent_ = ros::Time(0, 1);
   backend_ = backend;
   const SkinState rest = rest_in_face(*model_);
   rest_ = rest.vertices;
@@ -77,6 +78,7 @@ void FacePublisher::start(std::shared_ptr<const Model> model, const std::string&
   landmark_vertices_ = landmark_vertices(*model_);
   standard_landmarks_ = standard_landmarks(*model_);
   lines_ = std::make_unique<MuscleLines>(*model_);
+  muscles_are_new_ = true;
   skin_muscles_ = std::make_unique<SkinMuscles>(*model_);
   body_markers_ = replacing(to_bodies(*model_, face_frame_), shown_bodies_);
   eye_markers_ = replacing(to_eyeballs(*model_, face_frame_), shown_eyes_);
@@ -97,8 +99,13 @@ void FacePublisher::start(std::shared_ptr<const Model> model, const std::string&
         std::any_of(bones.begin(), bones.end(), [&](const BodyShape& bone) { return bone.name == shape.name; });
     wrenches_.emplace_back(handle_, "wrench/" + shape.name + (named_like_bone ? "_contact" : ""));
   }
+  std::vector<ros::Publisher> of_bones;
   for (const BodyShape& bone : bones)
-    wrenches_.emplace_back(handle_, "wrench/" + bone.name);
+    of_bones.push_back(wrenches_.emplace_back(handle_, "wrench/" + bone.name).publisher);
+  {
+    const std::lock_guard<std::mutex> lock(bones_mutex_);
+    bone_wrenches_ = std::move(of_bones);
+  }
   shapes_.insert(shapes_.end(), bones.begin(), bones.end());
   if (!parent_frame.empty())
   {
@@ -153,6 +160,19 @@ std::optional<SkinField> FacePublisher::wanted_field() const
   return wanted ? std::make_optional(shown_field_.load()) : std::nullopt;
 }
 
+bool FacePublisher::shows_bone_forces() const
+{
+  const std::lock_guard<std::mutex> lock(bones_mutex_);
+  return std::any_of(bone_wrenches_.begin(), bone_wrenches_.end(),
+                     [](const ros::Publisher& topic) { return topic.getNumSubscribers() > 0; });
+}
+
+// A frame that was made before the field was chosen, or before it had subscribers, has another field or none.
+bool FacePublisher::has_shown_field(const Frame& frame) const
+{
+  return frame.field.size() == frame.skin.vertices.size() && frame.kind_of_field == shown_field_;
+}
+
 // The values that the colours show, divided by the value that has the last colour.
 std::vector<float> FacePublisher::shown_values(const Frame& frame) const
 {
@@ -165,10 +185,10 @@ std::vector<float> FacePublisher::shown_values(const Frame& frame) const
     values = skin_muscles_->activation(frame.activation);
     full = activation_range;
   }
-  else if (colour_ == SkinColour::field && frame.field.size() == frame.skin.vertices.size())
+  else if (colour_ == SkinColour::field && has_shown_field(frame))
   {
     values = frame.field;
-    const SkinField field = shown_field_;
+    const SkinField field = frame.kind_of_field;
     full = field == SkinField::strain ? strain_range : field == SkinField::stress ? stress_range : line_range;
   }
   if (colour_range_ > 0)
@@ -195,8 +215,7 @@ bool FacePublisher::publish(const Frame& frame, const ros::Time& stamp, bool pau
     points_.publish(face_frame_, stamp,
                     [&](auto& cloud) { to_point_cloud(skin, distances(skin, rest_), colours_, cloud); });
   }
-  // A frame that was made before the topic had subscribers has no field.
-  if (frame.field.size() == skin.vertices.size())
+  if (has_shown_field(frame))
     field_.publish(face_frame_, stamp, [&](auto& cloud) { to_point_cloud(skin, frame.field, {}, cloud); });
   std_msgs::Header header;
   header.frame_id = face_frame_;
@@ -222,6 +241,8 @@ bool FacePublisher::publish(const Frame& frame, const ros::Time& stamp, bool pau
       marker.header.frame_id = face_frame_;
       marker.header.stamp = stamp;
     }
+    if (std::exchange(muscles_are_new_, false))
+      muscles = replacing(std::move(muscles), shown_muscles_);
     muscles_.publish(muscles);
   }
   publish_state(frame, stamp, paused);
@@ -234,13 +255,15 @@ bool FacePublisher::publish(const Frame& frame, const ros::Time& stamp, bool pau
   for (std::size_t b = 0; b < frame.bodies.size(); ++b)
     publish_wrench(b, frame.bodies[b]);
   const std::size_t first_bone = wrenches_.size() - frame.bones.size();
-  bone_listeners_ = std::any_of(wrenches_.begin() + static_cast<std::ptrdiff_t>(first_bone), wrenches_.end(),
-                                [](const auto& topic) { return topic.publisher.getNumSubscribers() > 0; });
   // A frame that was made before these topics had subscribers has no forces on bones.
   for (std::size_t b = 0; frame.has_bone_forces && b < frame.bones.size(); ++b)
     publish_wrench(first_bone + b, frame.bones[b]);
-  to_transforms(*model_, frame, poses, face_frame_, stamp, frame_transforms_);
-  transforms_.sendTransform(frame_transforms_);
+  // tf2 warns of transforms that come again with the same stamp, as they would while a simulated clock stands still.
+  if (stamp != std::exchange(sent_, stamp))
+  {
+    to_transforms(*model_, frame, poses, face_frame_, stamp, frame_transforms_);
+    transforms_.sendTransform(frame_transforms_);
+  }
   // rviz can lose markers that come together with the first transforms of their frames. The bodies are therefore
   // published once more.
   const ros::WallTime now = ros::WallTime::now();

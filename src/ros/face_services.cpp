@@ -56,6 +56,9 @@ bool FaceNode::on_pause(std_srvs::SetBool::Request& request, std_srvs::SetBool::
                 {
                   running.pause(request.data);
                   paused_ = running.paused();
+                  const std::lock_guard<std::mutex> lock(frame_mutex_);
+                  if (!request.data && stands())
+                    response.message = "~pace is lock_step: the face moves in ~step alone";
                 });
 }
 
@@ -70,6 +73,13 @@ bool FaceNode::on_step(Step::Request& request, Step::Response& response)
         const std::unique_lock<std::mutex> one_at_a_time(stepping_mutex_, std::try_to_lock);
         if (!one_at_a_time)
           throw Error("another step is under way");
+        // If another face has taken the place of this one, it tells whether it is paused.
+        const std::shared_ptr<void> at_the_end(nullptr,
+                                               [this](void*)
+                                               {
+                                                 if (const auto present = runner())
+                                                   paused_ = present->paused();
+                                               });
         Frame frame;
         frame.time = time_;
         double left = request.seconds;
@@ -86,7 +96,8 @@ bool FaceNode::on_step(Step::Request& request, Step::Response& response)
           // The clock may stand still during a step. Frames of its pieces would then have the same stamp.
           frame = running.step(seconds, left <= 0);
         } while (left > 0 && !frame.failed && !stopping_);
-        paused_ = running.paused();
+        if (left > 0 && !frame.failed)
+          throw Error("the step was ended early");
         response.time = frame.time;
         response.success = !frame.failed;
         response.message = frame.failure;
@@ -149,7 +160,7 @@ bool FaceNode::on_load_scene(LoadScene::Request& request, LoadScene::Response& r
   {
     if (request.scene.empty())
       throw Error("scene: found nothing; must be the path of a scene file or of a baked model (.vtkhdf)");
-    FaceParameters parameters = read_parameters(private_handle_);
+    FaceParameters parameters = read_parameters(private_handle_, false);
     const bool baked = std::filesystem::path(request.scene).extension() == ".vtkhdf";
     parameters.model = baked ? request.scene : "";
     parameters.bake.scene = request.scene;

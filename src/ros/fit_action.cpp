@@ -144,9 +144,15 @@ void FitAction::execute(const FitActivationGoalConstPtr& goal)
     cancelled_ = true;
   try
   {
-    const FitActivationResult result = answer(*goal);
+    const Face face = face_();
+    const FitActivationResult result = answer(*goal, face);
     if (goal->apply)
-      apply_(result.name, result.value);
+    {
+      if (const Face now = face_(); now.model != face.model || now.source.scene != face.source.scene)
+        throw Error("another face was loaded meanwhile, so that the result was not applied");
+      if (const std::string fault = apply_(result.name, result.value); !fault.empty())
+        throw Error("the face refused the result: " + fault);
+    }
     server_.setSucceeded(result);
   }
   catch (const std::exception& error)
@@ -158,9 +164,8 @@ void FitAction::execute(const FitActivationGoalConstPtr& goal)
   }
 }
 
-FitActivationResult FitAction::answer(const FitActivationGoal& goal)
+FitActivationResult FitAction::answer(const FitActivationGoal& goal, const Face& face)
 {
-  const Face face = face_();
   const auto folder = temporary_folder();
   const std::string request = *folder / "targets.yaml", result = *folder / "result.json";
   std::ofstream(request) << request_of(goal);

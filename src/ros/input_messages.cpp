@@ -63,20 +63,23 @@ void FaceInputs::check_stamp(const ros::Time& stamp) const
 }
 
 template <typename Act>
-void FaceInputs::take(const char* topic, const ros::Time& stamp, const Act& act)
+std::string FaceInputs::take(const char* topic, const ros::Time& stamp, const Act& act)
 {
   std::string fault;
   const auto running = runner_(&fault);
   const std::lock_guard<std::mutex> lock(mutex_);
   Topic& series = topics_[topic];
-  if (running)
+  const bool replaced = running && &running->model() != model_.get();
+  if (replaced)
+    fault = "another face is taking the place of this one";
+  if (running && !replaced)
     try
     {
       check_stamp(stamp);
       act(*running, now_());
       ++series.taken;
       series.warned = false;
-      return;
+      return "";
     }
     catch (const std::exception& error)
     {
@@ -95,6 +98,7 @@ void FaceInputs::take(const char* topic, const ros::Time& stamp, const Act& act)
   series.warned = true;
   ++series.refused;
   series.reason = fault;
+  return fault;
 }
 
 void FaceInputs::end_demo(const char* topic)
@@ -105,30 +109,30 @@ void FaceInputs::end_demo(const char* topic)
 }
 
 void FaceInputs::command(const char* topic, Runner& running, double now,
-                         const std::map<std::string, MuscleCommands::Course>& courses, double begin)
+                         const std::map<std::string, MuscleCommands::Course>& courses, double begin, double end)
 {
   // The message ends the demo. Muscles that it does not name keep their activation in the demo.
   if (demo_playing_)
     commands_->set(demo_->activation(now), now);
-  commands_->follow(courses, begin, now);
+  commands_->follow(courses, begin, now, end);
   silent_ = false;
   end_demo(topic);
   running.set_activation(commands_->at(now));
 }
 
-void FaceInputs::set(const char* topic, const ros::Time& stamp, const std::vector<std::string>& names,
-                     const std::vector<double>& values)
+std::string FaceInputs::set(const char* topic, const ros::Time& stamp, const std::vector<std::string>& names,
+                            const std::vector<double>& values)
 {
-  take(topic, stamp,
-       [&](Runner& running, double now)
-       {
-         check_lengths(names.size(), values.size(), model_->muscles.size(), "muscles");
-         std::map<std::string, MuscleCommands::Course> courses;
-         for (std::size_t entry = 0; entry < names.size(); ++entry)
-           if (!courses.emplace(names[entry], MuscleCommands::Course{ { now, values[entry] } }).second)
-             throw Error("muscle '" + names[entry] + "' is named twice");
-         command(topic, running, now, courses, now);
-       });
+  return take(topic, stamp,
+              [&](Runner& running, double now)
+              {
+                check_lengths(names.size(), values.size(), model_->muscles.size(), "muscles");
+                std::map<std::string, MuscleCommands::Course> courses;
+                for (std::size_t entry = 0; entry < names.size(); ++entry)
+                  if (!courses.emplace(names[entry], MuscleCommands::Course{ { now, values[entry] } }).second)
+                    throw Error("muscle '" + names[entry] + "' is named twice");
+                command(topic, running, now, courses, now);
+              });
 }
 
 void FaceInputs::on_muscle_activation(const MuscleActivation& message)
@@ -156,7 +160,8 @@ void FaceInputs::on_joint_trajectory(const trajectory_msgs::JointTrajectory& mes
              message.header.stamp.isZero() ? now : now + (message.header.stamp - ros::Time::now()).toSec();
          if (begin > now + longest_wait)
            throw Error(fmt::format("it begins in {:.3g} s; allowed are {} s", begin - now, longest_wait));
-         const auto before_it = present(std::max(begin, now));
+         // The message ends the demo; until the trajectory begins, muscles keep their present activation.
+         const auto before_it = present(demo_playing_ ? now : std::max(begin, now));
          std::map<std::string, MuscleCommands::Course> courses;
          for (std::size_t entry = 0; entry < names.size(); ++entry)
          {
@@ -203,7 +208,7 @@ void FaceInputs::take_pose(const char* topic, Runner& running, double now, const
     bones.time.insert(bones.time.end(), { left, over });
     bones.controls.insert(bones.controls.end(), { pose, rest });
   }
-  command(topic, running, now, courses, now);
+  command(topic, running, now, courses, now, bones.time.back());
   bones_ = std::move(bones);
   posed_ = bones_of_poses(*model_);
   for (const BoneFrame& followed : parameters_.bone_frames)

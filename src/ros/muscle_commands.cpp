@@ -44,7 +44,7 @@ void MuscleCommands::set(const std::map<std::string, double>& activation, double
   follow(courses, now, now);
 }
 
-void MuscleCommands::follow(const std::map<std::string, Course>& courses, double begin, double now)
+void MuscleCommands::follow(const std::map<std::string, Course>& courses, double begin, double now, double end)
 {
   std::vector<float> checked(courses_.size());
   for (const auto& [name, course] : courses)
@@ -57,7 +57,6 @@ void MuscleCommands::follow(const std::map<std::string, Course>& courses, double
   set_activations(*model_, named, checked);
 
   commanded_ = true;
-  heard_ = now;
   for (std::size_t muscle = 0; muscle < courses_.size(); ++muscle)
   {
     const auto found = courses.find(model_->muscles[muscle].name);
@@ -74,12 +73,12 @@ void MuscleCommands::follow(const std::map<std::string, Course>& courses, double
       next.push_back({ begin, value_at(courses_[muscle], begin) });
     }
     next.insert(next.end(), found->second.begin(), found->second.end());
-    heard_ = std::max(heard_, next.back().time);
     courses_[muscle] = std::move(next);
   }
-  end_ = now;
+  end_ = std::max(now, end);
   for (const Course& course : courses_)
     end_ = std::max(end_, course.back().time);
+  heard_ = end_;
 }
 
 void MuscleCommands::relax(double now, double seconds)

@@ -85,7 +85,7 @@ SkinColour skin_colour_from_name(const std::string& name)
   throw Error(fmt::format("found '{}'; allowed are skin, displacement, activation and field", name));
 }
 
-FaceParameters read_parameters(const ros::NodeHandle& private_handle)
+FaceParameters read_parameters(const ros::NodeHandle& private_handle, bool names_face)
 {
   ParameterReader reader(private_handle);
   FaceParameters out;
@@ -93,7 +93,7 @@ FaceParameters read_parameters(const ros::NodeHandle& private_handle)
       "[LEFT, UP, LEFT, UP]: numbers [m], the first corner to the right of the second and below it";
   out.bake.scene = reader.text("scene", "");
   out.model = reader.text("model", "");
-  if (out.bake.scene.empty() == out.model.empty())
+  if (names_face && out.bake.scene.empty() == out.model.empty())
     reader.add_fault("scene", fmt::format("found {}; allowed is either ~scene (a scene file) or ~model (a baked model)",
                                           out.model.empty() ? "neither ~scene nor ~model" : "both"));
   out.bake.mesh_directory = reader.text("mesh_dir", "");
@@ -106,7 +106,10 @@ FaceParameters read_parameters(const ros::NodeHandle& private_handle)
       reader.number("threads", 0, "a whole number; 0: one per core", 0, "0 (one per core) or more");
   out.runner.pace = reader.named("pace", "real_time", &pace_from_name);
   out.runner.frame_rate =
-      reader.number("frame_rate", 0.0, "a number [1/s]; 0: the model's", 0.0, "0 (the model's) or more [1/s]");
+      reader.number("frame_rate", 0.0, "a number [1/s]; 0: the model's", 0.0, "0 (the model's) or 0.1 to 1000 [1/s]");
+  if (const double rate = out.runner.frame_rate; rate > 0 && (rate < slowest_rate || rate > fastest_rate))
+    reader.add_fault("frame_rate", fmt::format("found {}; allowed are 0 (the model's) or {} to {} [1/s]", rate,
+                                               slowest_rate, fastest_rate));
   const int interval = reader.number("guard_interval", -1, "a whole number of time steps; 0: no guard", -1,
                                      "0 (no guard) or more, or -1 (the backend's choice)");
   if (interval == 0)

@@ -30,7 +30,7 @@ def moments(bag, options):
     joints = {}  # the latest position and effort of each joint; several nodes may publish some of the joints each
     held = {}  # the positions at which the joints stand still since the time `moved`
     unheard = set()  # joints without a message since the landmarks of `pending`
-    moved = start = last = names_of = pending = confirmed = None
+    moved = start = due = names_of = pending = confirmed = None
     for topic, message, stamp in bag.read_messages([places, names, joint_topic]):
         now = stamp.to_sec()
         if topic == names:
@@ -50,13 +50,15 @@ def moments(bag, options):
             start = now if start is None else start
             moment = now - start, dict(zip(names_of, (pose.position for pose in message.poses))), dict(joints)
             if start == now:
-                last = now
+                due = now + 1 / options.rate if options.rate else now
                 yield moment
             elif options.still:
                 if pending is None and moved is not None and now - moved >= options.still:
                     pending, unheard = moment, set(joints)
-            elif not options.rate or last is None or now - last >= 1 / options.rate:
-                last = now
+            elif not options.rate or now >= due:
+                # The next one is due one period later, so that messages that come a little early are not lost.
+                if options.rate:
+                    due = max(due, now - 1 / options.rate) + 1 / options.rate
                 yield moment
     if confirmed:
         yield confirmed
@@ -101,6 +103,8 @@ def main():
         used = found[1:] if options.still else found
         landmarks = [["time_s", "landmark", "forward_mm", "left_mm", "up_mm"]]
         for now, places, _ in used:
+            if places.keys() != rest.keys():
+                fail("%s: its face has other landmarks from %.3f s on; cut the bag there" % (options.bag, now))
             for name, place in places.items():
                 moved = (getattr(place, axis) - getattr(rest[name], axis) for axis in "xyz")
                 landmarks.append(["%.6f" % now, name] + ["%.6f" % (1e3 * value) for value in moved])

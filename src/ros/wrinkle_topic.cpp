@@ -83,7 +83,8 @@ void WrinkleTopic::run()
     }
     catch (const std::exception& error)
     {
-      ROS_ERROR_THROTTLE(10, "wrinkles are not measured: %s", error.what());
+      if (warning_.passes(10))
+        ROS_ERROR("wrinkles are not measured: %s", error.what());
     }
     lock.lock();
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "frontalis/model/model.hpp"
+#include "frontalis/ros/wall_throttle.hpp"
 #include "frontalis/study/wrinkles.hpp"
 
 #include <frontalis/SkinWrinkles.h>
@@ -59,6 +60,7 @@ private:
   std::optional<Wanted> wanted_;
   std::atomic<bool> stop_{ false };
   // used by the thread: the latest message, and the face and the skin that it is about
+  WallThrottle warning_;
   SkinWrinklesPtr latest_;
   Wanted latest_wanted_;
   std::thread thread_;

@@ -43,10 +43,11 @@ Runner::~Runner()
 void Runner::set_frame_rate(double rate)
 {
   const double found = rate > 0 ? rate : self_->model->frame_rate;
-  if (!(found >= 0.1 && found <= 1000))
-    throw Error(fmt::format("frame rate {} Hz: allowed is 0.1 to 1000", found));
+  if (!(found >= slowest_rate && found <= fastest_rate))
+    throw Error(fmt::format("frame rate {} Hz: allowed is {} to {}", found, slowest_rate, fastest_rate));
   self_->frame_rate = found;
 }
+double Runner::frame_rate() const { return self_->frame_rate; }
 
 void Runner::set_damping(double damping)
 {
@@ -118,10 +119,9 @@ void Runner::reset()
   std::unique_lock<std::mutex> lock(self_->mutex);
   std::fill(self_->target.activation.begin(), self_->target.activation.end(), 0.0f);
   std::fill(self_->target.bone.begin(), self_->target.bone.end(), RigidTransform{});
-  self_->reset_wanted = true;
+  const std::uint64_t own = ++self_->resets_wanted;
   self_->wake.notify_all();
-  const auto before = self_->resets_done;
-  self_->wake.wait(lock, [&] { return self_->resets_done != before || self_->stop; });
+  self_->wake.wait(lock, [&] { return self_->resets_done >= own || self_->stop; });
   if (!self_->reset_error.empty())
     throw Error("reset failed: " + self_->reset_error);
 }

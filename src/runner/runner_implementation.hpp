@@ -34,10 +34,9 @@ struct Runner::Implementation
   Controls target;
   bool stop = false;
   bool paused = false;
-  bool reset_wanted = false;
   bool cancel_wanted = false;  ///< ends the call of step() that is under way
-  bool resetting = false;      ///< whether a reset has begun and not ended
-  std::uint64_t resets_done = 0;
+  /// Numbers of calls of reset(): all, those whose reset has begun, and those whose reset is over, also if it failed.
+  std::uint64_t resets_wanted = 0, resets_begun = 0, resets_done = 0;
   std::string reset_error;  ///< why the latest reset failed; empty if it succeeded
   struct StepRequest
   {
@@ -69,6 +68,7 @@ struct Runner::Implementation
   Profile last_profile;           ///< of the solver at the latest renewal of the monitor
   std::thread thread;
 
+  bool reset_wanted() const { return resets_wanted > resets_begun; }
   /// Wall time per frame [s].
   double period() const { return 1 / frame_rate; }
   /// Simulated time multiplied by Model::time_scaling, the time of activations and frames [s].

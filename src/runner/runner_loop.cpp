@@ -19,6 +19,7 @@ namespace
 constexpr int steps_per_slice = 16;
 // Wall time after a frame before progress is told: somewhat less than a fiftieth of a second.
 constexpr std::chrono::milliseconds progress_period(18);
+constexpr double longest_approach = 1.0 / 30;  // time in which controls approach their targets at the most [s]
 // Wall time between two computations of the energies and volume ratios.
 constexpr std::chrono::seconds monitor_period(1);
 
@@ -124,6 +125,7 @@ void Runner::Implementation::make_frame(bool renew_monitor)
       to_face_frame(*model, skin);
       frame.skin = std::move(skin);
       const auto field = settings.wanted_field ? settings.wanted_field() : std::nullopt;
+      frame.kind_of_field = field.value_or(frame.kind_of_field);
       if (field == SkinField::lines && fine_lines)
         frame.field = frame.skin.line_height;
       else if (field && presence_of(*model, Effect::output_fields).present)
@@ -158,12 +160,13 @@ void Runner::Implementation::publish(bool renew_monitor, bool hands_out)
 }
 
 // Controls at the end of the next slice. They approach their targets gradually, so that they do not jump within a time
-// step: a slice covers a fraction of the remaining difference that adds up to 95 % (1 - exp(-3)) per frame.
+// step: by 95 % (1 - exp(-3)) per frame, or per `longest_approach` if frames are rare.
 Controls Runner::Implementation::controls_after(double seconds) const
 {
   Controls next = target;
   const Controls& now = solver->controls();
-  const auto share = std::min(1.0f, 3 * static_cast<float>(std::min(1.0, seconds / period())));
+  const double approach = std::min(period(), longest_approach);
+  const auto share = std::min(1.0f, 3 * static_cast<float>(std::min(1.0, seconds / approach)));
   for (std::size_t m = 0; m < next.activation.size(); ++m)
   {
     const float difference = next.activation[m] - now.activation[m];
@@ -187,8 +190,7 @@ void Runner::Implementation::run_frame()
   const double end = settings.pace == Pace::fastest
                          ? time() + 1e9
                          : time() + clock.behind(Clock::now(), time(), 2 * period()) + period();
-  bool has_told = false;
-  const auto interrupted = [this] { return stop || paused || reset_wanted || step_request != nullptr; };
+  const auto interrupted = [this] { return stop || paused || reset_wanted() || step_request != nullptr; };
   // A frame has one slice at the least, so that a face that steps slowly is still seen to move.
   for (bool is_first = true; !frame.failed && time() < end && (is_first || Clock::now() < deadline); is_first = false)
   {
@@ -198,8 +200,8 @@ void Runner::Implementation::run_frame()
       std::unique_lock<std::mutex> lock(mutex);
       if (interrupted())
       {
-        // The face stands still, so its frame must not be older than the progress that was told.
-        const bool is_late = has_told && paused && !stop;
+        // The face stands still, so that its latest frame must not be of an earlier time.
+        const bool is_late = !is_first && paused && !stop;
         lock.unlock();
         if (is_late)
           publish();
@@ -212,7 +214,6 @@ void Runner::Implementation::run_frame()
     {
       note_progress();
       settings.on_progress(frame);
-      has_told = true;
     }
   }
   publish();
@@ -221,7 +222,7 @@ void Runner::Implementation::run_frame()
     return;
   const bool waits = Clock::now() < deadline;
   wake.wait_until(lock, deadline,
-                  [&] { return stop || reset_wanted || step_request != nullptr || switch_request != nullptr; });
+                  [&] { return stop || reset_wanted() || step_request != nullptr || switch_request != nullptr; });
   // While a face waits for its next frame, there is no progress to be told.
   if (waits)
     last_told = Clock::now();
@@ -239,7 +240,7 @@ void Runner::Implementation::serve_step(StepRequest& request)
   const Controls begin = solver->controls();
   clock.restart(Clock::now(), time());
   const auto interrupted = [this]
-  { return stop || reset_wanted || cancel_wanted || (settings.ends_steps && settings.ends_steps()); };
+  { return stop || reset_wanted() || cancel_wanted || (settings.ends_steps && settings.ends_steps()); };
   for (double done = 0; done < request.seconds && request.error.empty();)
   {
     const double seconds = std::min(request.seconds - done, slice());
@@ -270,7 +271,7 @@ void Runner::Implementation::serve_switch(std::unique_lock<std::mutex>& lock)
           [this]
           {
             const std::lock_guard<std::mutex> here(mutex);
-            return !stop && !reset_wanted && !cancel_wanted;
+            return !stop && !reset_wanted() && !cancel_wanted;
           });
     }
     catch (const Error& error)
@@ -317,8 +318,7 @@ void Runner::Implementation::reset()
   publish(true);
   const std::lock_guard<std::mutex> lock(mutex);
   reset_error.clear();
-  resetting = false;
-  ++resets_done;
+  resets_done = resets_begun;
 }
 
 void Runner::Implementation::serve_until_stopped()
@@ -333,7 +333,7 @@ void Runner::Implementation::serve_until_stopped()
       const auto idle = [&] { return paused || settings.pace == Pace::lock_step; };
       was_idle = idle();
       wake.wait(lock, [&]
-                { return stop || reset_wanted || step_request != nullptr || switch_request != nullptr || !idle(); });
+                { return stop || reset_wanted() || step_request != nullptr || switch_request != nullptr || !idle(); });
       if (stop)
         return refuse_requests("the runner is being stopped");
       if (switch_request != nullptr)
@@ -342,8 +342,8 @@ void Runner::Implementation::serve_until_stopped()
         if (idle())
           continue;
       }
-      std::swap(reset_now, reset_wanted);
-      resetting = reset_now;
+      reset_now = reset_wanted();
+      resets_begun = resets_wanted;
       // This also ends a step() that was requested before the reset but has not begun.
       if (reset_now)
       {
@@ -387,13 +387,13 @@ void Runner::Implementation::run()
       fail(error.what());
       std::unique_lock<std::mutex> lock(mutex);
       refuse_requests(frame.failure);
-      if (resetting)
+      if (resets_done != resets_begun)
       {
-        resetting = false;
         reset_error = frame.failure;
-        ++resets_done;  // failed resets count too, because their callers wait for this number
+        resets_done = resets_begun;
+        wake.notify_all();
       }
-      wake.wait_for(lock, std::chrono::milliseconds(100), [&] { return stop || reset_wanted; });
+      wake.wait_for(lock, std::chrono::milliseconds(100), [&] { return stop || reset_wanted(); });
     }
 }
 

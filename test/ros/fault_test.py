@@ -48,11 +48,16 @@ class Fault(unittest.TestCase):
         self.check("/bad_scene", "five_faults.yaml:")
 
     def test_bad_parameters_are_told_all_at_once(self):
+        scene = os.path.join(rospkg.RosPack().get_path("frontalis"), "test/ros/small.yaml")
+        self.check("/no_scene", "neither ~scene nor ~model")
+        answer = rospy.ServiceProxy("/no_scene/load_scene", LoadScene)(scene=scene)
+        self.assertTrue(answer.success, answer.message)
         self.check("/bad_parameters", "~scene nor ~model", "pace", "'slow'", "lock_step", "threads", "backend")
 
     def test_parameters_of_the_wrong_type(self):
         self.check("/bad_texts", "bone_frames: has the wrong type; allowed is a mapping", "effects_off", "'viscocity'",
                    "damping: has the wrong type")
+        self.check("/bad_rate", "frame_rate: found 2000; allowed are 0 (the model's) or 0.1 to 1000")
         self.check("/bad_frames", "bone_frames/jaw: allowed is the name of a frame, or a mapping with frame and rest")
 
     def test_program_that_is_not_there(self):

@@ -55,6 +55,9 @@ class Follow(unittest.TestCase):
 
     def test_follows_and_tells_of_faults(self):
         rest = self.face.place("tip")
+        # in lock-step a face moves in ~step alone
+        self.assertTrue(self.face.state.paused)
+        self.assertIn("lock_step", self.face.pause(False).message)
         # without a frame the bone stays where it is, and the diagnostics name the reason
         self.wait_for_word("jaw")
         self.assertAlmostEqual(self.face.place("tip")[2], rest[2], 5)

@@ -53,6 +53,19 @@ TEST(MuscleCommands, SilenceBeginsWithTheEndOfACourse)
   EXPECT_EQ(commands.silence(3), 0);
 }
 
+TEST(MuscleCommands, SilenceBeginsWithTheLastEndOfCoursesAndMotionsOfBones)
+{
+  MuscleCommands commands = two_muscles();
+  commands.follow({ { "raiser", { { 0, 0 }, { 2, 1 } } } }, 0, 0);
+  commands.set({ { "knitter", 1 } }, 0.5);
+  EXPECT_EQ(commands.silence(1.9), 0);
+  EXPECT_DOUBLE_EQ(commands.silence(2.5), 0.5);
+  commands.follow({}, 3, 3, 5);
+  EXPECT_TRUE(commands.moving(4.9));
+  EXPECT_FALSE(commands.moving(5));
+  EXPECT_DOUBLE_EQ(commands.silence(6), 1);
+}
+
 TEST(MuscleCommands, RefuseAsAWhole)
 {
   MuscleCommands commands = two_muscles();

@@ -24,7 +24,7 @@ class Robot(unittest.TestCase):
         cls.face = Face()
         cls.joints, cls.wrenches = {}, {}
         rospy.Subscriber("joint_states", JointState, cls.take_joints)
-        for bone in (BROW_ANCHOR, "anchor_lower_lip", "jaw"):
+        for bone in (BROW_ANCHOR, "anchor_lower_lip", "jaw"):  # not that of the upper lip, which a test subscribes to
             rospy.Subscriber("/face/wrench/" + bone, WrenchStamped, cls.take_wrench, bone)
         # A queue of one would drop the first of two messages in a row if the machine is slow.
         cls.command = rospy.Publisher("/robot_controller/command", JointTrajectory, queue_size=10)
@@ -110,6 +110,13 @@ class Robot(unittest.TestCase):
 
         self.wait_for_effort("jaw_open", torque)
         self.assertGreater(self.joints["jaw_open"][1], 0.001)  # the skin closes the jaw
+
+    def test_the_first_step_after_a_subscription_has_forces(self):
+        forces = []
+        topic = rospy.Subscriber("/face/wrench/anchor_upper_lip", WrenchStamped, forces.append)
+        wait(topic.get_num_connections, "a connection")
+        self.face.advance(0.01)
+        wait(lambda: forces, "the force of this step")
 
     def test_takes_poses_by_name(self):
         self.pose.publish("a pose that there is not")

@@ -9,15 +9,25 @@ import unittest
 import rospkg
 import rospy
 import rostest
+import tf2_ros
 from dynamic_reconfigure.client import Client
 from frontalis.srv import LoadScene, Probe
-from geometry_msgs.msg import Point
+from geometry_msgs.msg import Point, TransformStamped
 from sensor_msgs.msg import PointCloud2
 from visualization_msgs.msg import Marker, MarkerArray
 
 from face import LIMIT, Face, wait
 
 FOLDER = os.path.join(rospkg.RosPack().get_path("frontalis"), "test")
+
+
+def link(child, lift):
+    message = TransformStamped(child_frame_id=child)
+    message.header.frame_id = "face"
+    message.header.stamp = rospy.Time.now()
+    message.transform.translation.z = lift
+    message.transform.rotation.w = 1
+    return message
 
 
 class Scenes(unittest.TestCase):
@@ -42,9 +52,14 @@ class Scenes(unittest.TestCase):
         self.assertAlmostEqual(self.face.state.activation[0], 0.5, 3)
 
     def test_2_another_scene_takes_over(self):
+        muscles = []
+        rospy.Subscriber("/face/muscles", MarkerArray, lambda message: muscles.extend(message.markers))
+        wait(lambda: any(marker.ns == "frontalis_left" for marker in muscles), "the muscles")
         answer = self.load(scene=FOLDER + "/ros/small.yaml")
         self.assertTrue(answer.success, answer.message)
         wait(lambda: self.face.state.name == ["lift"], "the new face")
+        wait(lambda: {m.ns for m in muscles if m.action == Marker.DELETE} == {"frontalis_left", "frontalis_right"},
+             "the removal of the former muscles")
         self.face.command(lift=0.3)
         wait(lambda: abs(self.face.state.activation[0] - 0.3) < 1e-3, "a command to the new face")
         self.assertTrue(self.load(scene=FOLDER + "/ros/pair.yaml").success)
@@ -141,6 +156,28 @@ class Scenes(unittest.TestCase):
         # the solver's own words, which name the device and how it is used (test/solver/backend_test.cpp)
         self.assertTrue(self.face.diagnostic("backend"))
         self.assertEqual(self.face.diagnostic("backend"), self.face.state.backend)
+
+    def test_7_bones_follow_frames_at_once_after_a_reset(self):
+        rospy.set_param("/face/bone_frames", {"skull": {"frame": "jaw", "rest": "jaw_rest"}})
+        self.addCleanup(rospy.delete_param, "/face/bone_frames")
+        frames, fixed = tf2_ros.TransformBroadcaster(), tf2_ros.StaticTransformBroadcaster()
+        fixed.sendTransform(link("jaw_rest", 0))
+        self.assertTrue(self.load(scene=FOLDER + "/ros/moved.yaml").success)
+        self.face.wait_for_frame(lambda: not self.face.state.name and self.face.state.time > 0, "the face with a bone")
+        rest = self.face.height("tip")
+
+        def lifted(lift):
+            frames.sendTransform(link("jaw", lift))
+            return abs(self.face.height("tip") - rest - lift) < 2e-4
+
+        for _ in range(3):
+            # The bone must not wait for the time that the face had reached before.
+            self.assertTrue(self.face.step(20).success)
+            self.assertTrue(self.face.pause(False).success)
+            self.assertTrue(self.face.reset().success)
+            wait(lambda: lifted(0), "the bone at rest")
+            wait(lambda: lifted(0.003), "the bone above it")
+            self.assertLess(self.face.state.time, 19)
 
 
 if __name__ == "__main__":

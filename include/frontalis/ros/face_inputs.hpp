@@ -53,11 +53,13 @@ public:
   void reset(Runner& running);
 
   /// Commands muscles as a message on `topic` would; `topic` may also name another source. A fault is reported like the
-  /// fault of a message, and nothing changes.
-  void set(const char* topic, const ros::Time& stamp, const std::vector<std::string>& names,
-           const std::vector<double>& values);
-  /// Sets the runner's activations and bones to those of the demo, the commands and the followed frames at a time [s].
+  /// fault of a message, and nothing changes. Returns the fault; empty if there is none.
+  std::string set(const char* topic, const ros::Time& stamp, const std::vector<std::string>& names,
+                  const std::vector<double>& values);
+  /// Sets the runner's activations and bones to those of the demo, the commands and the followed frames at a time [s],
+  /// or at the present one. A reset that is under way is over before the present time is asked for.
   void play(Runner& running, double time);
+  void play(Runner& running);
   /// The expression that the demo shows at a simulated time [s]; empty if no demo plays.
   std::string shown_expression(double time) const;
   /// Whether the activations may change after a time [s] without a further command.
@@ -79,11 +81,11 @@ private:
   void on_bone_pose(const geometry_msgs::TransformStamped& message);
 
   /// Calls `act` with the runner and the simulated time, with the mutex locked; refuses the message if there is no
-  /// runner, its stamp is not close to the present, or `act` throws.
+  /// runner, its stamp is not close to the present, or `act` throws. Returns the reason of a refusal.
   template <typename Act>
-  void take(const char* topic, const ros::Time& stamp, const Act& act);
+  std::string take(const char* topic, const ros::Time& stamp, const Act& act);
   void command(const char* topic, Runner& running, double now,
-               const std::map<std::string, MuscleCommands::Course>& courses, double begin);
+               const std::map<std::string, MuscleCommands::Course>& courses, double begin, double end = 0);
   /// Durations [s]: to reach a pose, to hold it (0: until the next command), and to relax after that.
   struct Timing
   {
@@ -91,6 +93,7 @@ private:
   };
   /// Commands all muscles, and the bones that expressions or action units of the model move.
   void take_pose(const char* topic, Runner& running, double now, const Controls& pose, const Timing& timing);
+  void play_at(Runner& running, double time);
   void set_bones(Runner& running, double time) const;
   Controls present_bones(const Runner& running, double time) const;
   std::map<std::string, double> present(double time) const;

@@ -4,6 +4,7 @@
 #include "frontalis/ros/face_publisher.hpp"
 #include "frontalis/ros/fit_action.hpp"
 #include "frontalis/ros/parameters.hpp"
+#include "frontalis/ros/wall_throttle.hpp"
 #include "frontalis/runner/runner.hpp"
 
 #include <diagnostic_updater/diagnostic_updater.h>
@@ -54,6 +55,8 @@ private:
   void on_frame(const Frame& frame, std::uint64_t face);
   void on_progress(const Frame& frame, std::uint64_t face);
   void log_speed_once();
+  /// Whether the face moves in ~step alone. The caller must hold frame_mutex_.
+  bool stands() const { return paused_ || parameters_.runner.pace == Pace::lock_step; }
 
   // services
   /// Calls `act` with the runner. The response is a failure with the reason if there is no runner yet or if `act`
@@ -77,6 +80,7 @@ private:
   void repeat_frame_and_play();
   /// Publishes ~caption if its text has changed.
   void show_caption();
+  void send_diagnostics();
   void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   /// The runner; null while there is no model, and then the reason is written to `reason`.
@@ -95,17 +99,18 @@ private:
 
   std::mutex frame_mutex_;  ///< protects the members up to last_published_; never held while the runner is called
   FacePublisher publisher_;
-  const std::string loading_frame_;  ///< of the caption while there is no model
-  std::uint64_t present_face_ = 0;   ///< whose frames are published
-  Frame frame_;                      ///< the latest frame
+  const std::string loading_frame_;               ///< of the caption while there is no model
+  std::atomic<std::uint64_t> present_face_{ 0 };  ///< whose frames are published; may be read without the mutex
+  Frame frame_;                                   ///< the latest frame
   bool has_frame_ = false;
   bool frame_finite_ = true;
   std::uint64_t frames_dropped_ = 0;
   std::optional<std::string> caption_;  ///< text of ~caption; none before the first one of a face
   double slowness_ = 0;                 ///< how many times slower than real time the caption says; 0: nothing
   std::string speed_report_;            ///< as it was logged; empty if it was not logged yet
-  ros::WallTime last_frame_;            ///< when the runner made the latest frame
-  ros::WallTime last_published_;        ///< when a frame was published the last time, new or repeated
+  WallThrottle frame_warning_, diagnostics_warning_;
+  ros::WallTime last_frame_;      ///< when the runner made the latest frame
+  ros::WallTime last_published_;  ///< when a frame was published the last time, new or repeated
 
   std::atomic<double> time_{ 0 };  ///< simulated time of the latest frame [s]
   std::atomic<bool> paused_{ false };

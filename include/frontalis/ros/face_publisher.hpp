@@ -16,6 +16,7 @@
 
 #include <atomic>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <set>
 #include <string>
@@ -52,7 +53,7 @@ public:
   /// Whether frames must have displacements, for ~muscles.
   bool shows_muscles() const { return muscles_.getNumSubscribers() > 0; }
   /// Whether frames must have the forces on bones.
-  bool shows_bone_forces() const { return bone_listeners_; }
+  bool shows_bone_forces() const;
 
   /// Publishes a frame. Returns false and publishes nothing if the skin is not finite. start() must have been called.
   bool publish(const Frame& frame, const ros::Time& stamp, bool paused);
@@ -96,6 +97,7 @@ private:
   /// Adds the removal of markers in `shown` that `markers` do not replace. `shown`: markers that the topic shows;
   /// updated.
   visualization_msgs::MarkerArray replacing(visualization_msgs::MarkerArray markers, MarkerNames& shown) const;
+  bool has_shown_field(const Frame& frame) const;
   std::vector<float> shown_values(const Frame& frame) const;
 
   Topic<visualization_msgs::Marker> skin_;
@@ -103,14 +105,16 @@ private:
   Topic<geometry_msgs::PoseArray> landmarks_, landmarks_68_;
   Topic<SimulationState> state_;
   std::vector<Topic<geometry_msgs::WrenchStamped>> wrenches_;  ///< one per entry of shapes_
-  std::atomic<bool> bone_listeners_{ false };  ///< whether the topic of a bone had subscribers at the latest frame
+  mutable std::mutex bones_mutex_;                             ///< protects bone_wrenches_
+  std::vector<ros::Publisher> bone_wrenches_;                  ///< topics of wrenches_ that are of bones
   ros::Publisher topology_, bodies_, muscles_, eyes_, caption_;
-  MarkerNames shown_bodies_, shown_eyes_;
+  MarkerNames shown_bodies_, shown_eyes_, shown_muscles_;
   visualization_msgs::MarkerArray body_markers_, eye_markers_;  ///< kept until they are published again
   std::optional<ros::WallTime> bodies_due_{};  ///< when bodies are published again; 0: to be decided at the next frame
   ros::NodeHandle handle_;
   std::unique_ptr<WrinkleTopic> wrinkles_;
   tf2_ros::TransformBroadcaster transforms_;
+  ros::Time sent_{ 0, 1 };  ///< stamp of the latest transforms
   tf2_ros::StaticTransformBroadcaster static_transforms_;
 
   std::shared_ptr<const Model> model_;
@@ -121,6 +125,7 @@ private:
   std::vector<std::size_t> landmark_vertices_;
   std::vector<std::size_t> standard_landmarks_;
   std::unique_ptr<MuscleLines> lines_;
+  bool muscles_are_new_ = false;  ///< whether ~muscles has not shown the muscles of this model yet
   std::unique_ptr<SkinMuscles> skin_muscles_;
   std::atomic<SkinColour> colour_{ SkinColour::skin };
   std::atomic<SkinField> shown_field_{ SkinField::strain };

@@ -27,7 +27,9 @@ public:
   };
   /// Throws an Error if there is no face yet.
   using FindFace = std::function<Face()>;
-  using Apply = std::function<void(const std::vector<std::string>& muscles, const std::vector<double>& activations)>;
+  /// Commands the activations that were found. Returns why the face refuses them; empty if it takes them.
+  using Apply =
+      std::function<std::string(const std::vector<std::string>& muscles, const std::vector<double>& activations)>;
 
   FitAction(const ros::NodeHandle& private_handle, FindFace face, Apply apply);
   /// Ends the goal that is under way.
@@ -37,7 +39,7 @@ public:
 
 private:
   void execute(const FitActivationGoalConstPtr& goal);
-  FitActivationResult answer(const FitActivationGoal& goal);
+  FitActivationResult answer(const FitActivationGoal& goal, const Face& face);
 
   const FindFace face_;
   const Apply apply_;

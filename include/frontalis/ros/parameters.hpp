@@ -58,6 +58,7 @@ struct FaceParameters
 };
 
 /// Reads the parameters. Throws an Error that names every bad parameter, the value found and the allowed values.
-FaceParameters read_parameters(const ros::NodeHandle& private_handle);
+/// `names_face`: whether one of ~scene and ~model must be given.
+FaceParameters read_parameters(const ros::NodeHandle& private_handle, bool names_face = true);
 
 }  // namespace frontalis

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "frontalis/render/face_appearance.hpp"
+#include "frontalis/ros/wall_throttle.hpp"
 
 #include <frontalis/SimulationState.h>
 #include <geometry_msgs/PoseArray.h>
@@ -68,6 +69,7 @@ private:
   int samples_ = 1;
   double rate_ = 10;  ///< pictures per second of the stamps; 0: every frame
   Inputs inputs_;
+  WallThrottle warning_;
   bool was_complete_ = false;  ///< whether the inputs were complete since the latest report_silence()
   ros::Time pictured_;
   /// the messages from which appearance_ and triangles_ were made

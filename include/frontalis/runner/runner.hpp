@@ -31,14 +31,17 @@ struct Frame
   std::vector<BodyFrame> bones;   ///< one per bone
   /// whether RunnerSettings::wants_bone_forces was true; otherwise reactions of bones are 0
   bool has_bone_forces = false;
-  std::vector<float> activation;  ///< present activation of each muscle, 0..1
-  Monitor monitor;                ///< energies and volume ratios, renewed about once per second of wall time
-  double seconds_per_step = 0;    ///< wall time per step since the latest renewal of the monitor; 0: not known
-  std::size_t solver_bytes = 0;   ///< memory of the solver's arrays, without the model
-  GuardCounts guard;              ///< since the runner started
-  bool failed = false;            ///< true: the motion was stopped; the skin is the last one without a fault
-  std::string failure;            ///< the reason, in one sentence
+  SkinField kind_of_field = SkinField::strain;  ///< what `field` contains
+  std::vector<float> activation;                ///< present activation of each muscle, 0..1
+  Monitor monitor;               ///< energies and volume ratios, renewed about once per second of wall time
+  double seconds_per_step = 0;   ///< wall time per step since the latest renewal of the monitor; 0: not known
+  std::size_t solver_bytes = 0;  ///< memory of the solver's arrays, without the model
+  GuardCounts guard;             ///< since the runner started
+  bool failed = false;           ///< true: the motion was stopped; the skin is the last one without a fault
+  std::string failure;           ///< the reason, in one sentence
 };
+
+constexpr double slowest_rate = 0.1, fastest_rate = 1000;  ///< limits of the frames per second of wall time
 
 enum class Pace
 {
@@ -103,6 +106,7 @@ public:
   /// Changes the number of frames per second of wall time, 0.1 to 1000; 0: that of the model. Throws an Error if it is
   /// out of range.
   void set_frame_rate(double rate);
+  double frame_rate() const;
 
   /// Changes the damping (frontalis/solver/damping.hpp) between two time steps; below 0: that of the model. Throws an
   /// Error if it is not finite.

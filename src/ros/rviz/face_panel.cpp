@@ -187,10 +187,10 @@ void FacePanel::connect_to_face()
 
 void FacePanel::show_no_face()
 {
-  message_->setText("no face publishes " + face_->text() + "/state");
+  message_->setText("no face publishes " + QString::fromStdString(state_.getTopic()));
   energy_->clear();
   speed_->setValue(0);
-  if (!slider_of_.empty())
+  if (known_)
     clear_muscles();
 }
 
@@ -224,7 +224,7 @@ void FacePanel::poll()
       ++pending;
   if (state_ && state_.getNumPublishers() == 0)
     return show_no_face();
-  if (!slider_of_.empty() || asked_ || !state_)
+  if (known_ || asked_ || !state_)
     return;
   asked_ = true;
   call<ListMuscles>("list_muscles", ListMuscles(),
@@ -240,6 +240,7 @@ void FacePanel::poll()
 
 void FacePanel::clear_muscles()
 {
+  known_ = false;
   slider_of_.clear();
   unit_of_.clear();
   for (QGridLayout* const layout : { muscles_, units_, expressions_ })
@@ -253,6 +254,7 @@ void FacePanel::clear_muscles()
 void FacePanel::show_muscles(const ListMuscles::Response& face)
 {
   clear_muscles();
+  known_ = true;
   int row = 0;
   for (const std::string& muscle : face.name)
   {
@@ -365,9 +367,9 @@ void FacePanel::on_state(const SimulationState& state)
                        .arg(1e3 * state.kinetic_energy, 0, 'g', 3));
   message_->setText(state.failed ? QString::fromStdString(state.message) : QString::fromStdString(state.backend));
   // If the muscles differ, the face shows another scene.
-  if (!slider_of_.empty() && (slider_of_.size() != state.name.size() ||
-                              std::any_of(state.name.begin(), state.name.end(),
-                                          [this](const std::string& name) { return slider_of_.count(name) == 0; })))
+  if (known_ && (slider_of_.size() != state.name.size() ||
+                 std::any_of(state.name.begin(), state.name.end(),
+                             [this](const std::string& name) { return slider_of_.count(name) == 0; })))
     return clear_muscles();
   if (std::chrono::steady_clock::now() - edited_ < untouched)
     return;

@@ -79,6 +79,7 @@ private:
   ros::Publisher activation_, action_units_, expression_;
   ros::Subscriber state_;
   bool paused_ = false;
+  bool known_ = false;                              ///< whether the muscles and expressions of the face are shown
   bool asked_ = false;                              ///< whether a call of ~list_muscles is under way
   std::chrono::steady_clock::time_point edited_{};  ///< when a slider was moved last
   std::list<std::future<std::function<void()>>> calls_;

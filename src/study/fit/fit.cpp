@@ -11,6 +11,8 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <set>
+#include <string>
 
 namespace frontalis
 {
@@ -37,8 +39,11 @@ std::size_t index_of_landmark(const Model& model, const std::string& name)
 VectorXd target_vector(const Model& model, const FitRequest& request, const VectorXd& rest)
 {
   VectorXd out = VectorXd::Constant(rest.size(), NAN);
+  std::set<std::string> named;
   for (const LandmarkTarget& target : request.targets)
   {
+    if (!named.insert(target.landmark).second)
+      throw Error(fmt::format("landmark '{}' has two targets", target.landmark));
     const auto first = static_cast<Index>(3 * index_of_landmark(model, target.landmark));
     for (Index axis = 0; axis < 3; ++axis)
       out[first + axis] = target.place[static_cast<std::size_t>(axis)] - (target.moved ? 0 : rest[first + axis]);

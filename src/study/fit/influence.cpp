@@ -239,11 +239,18 @@ Influence obtain_influence(ForwardRuns& runs, const std::vector<Unknown>& unknow
   const double begin = wall_seconds();
   const auto count = static_cast<double>(unknowns.size());
   bool measured = false;
+  // Each column is kept at once, because a fit may be cancelled and a later one may need the same unknowns.
+  const auto keep = [&]
+  {
+    measured = true;
+    if (!path.empty())
+      keep_influence(path, model, influence);
+  };
   if (influence.rest.size() == 0)
   {
     runs.announce("influence", 0);
     influence.rest = runs.settle({});
-    measured = true;
+    keep();
   }
   for (std::size_t i = 0; i < unknowns.size(); ++i)
   {
@@ -253,15 +260,14 @@ Influence obtain_influence(ForwardRuns& runs, const std::vector<Unknown>& unknow
         known != influence.columns.end() && known->second.at == at)
       continue;
     runs.announce("influence", static_cast<double>(i) / count);
-    auto& column = influence.columns[unknown.name];
+    decltype(influence.columns)::mapped_type column;
     column.at = at;
     for (const std::size_t side : { 0, 1 })
       column.displaced[side] = runs.settle({ { unknown.name, at[side] } }) - influence.rest;
-    measured = true;
+    influence.columns[unknown.name] = column;
+    keep();
   }
   seconds = measured ? wall_seconds() - begin : 0;
-  if (measured && !path.empty())
-    keep_influence(path, model, influence);
   return influence;
 }
 

@@ -240,7 +240,7 @@ std::string activations_of(const RetargetResult& result)
 {
   std::string text = fmt::format("time,{}\n", fmt::join(result.names, ","));
   for (std::size_t t = 0; t < result.time.size(); ++t)
-    text += fmt::format("{:.6g},{:.6g}\n", result.time[t], fmt::join(result.values[t], ","));
+    text += fmt::format("{:.9g},{:.6g}\n", result.time[t], fmt::join(result.values[t], ","));
   return text;
 }
 

@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -154,7 +155,7 @@ void write_text(const std::string& path, const std::string& text)
   std::error_code failed;
   // Unlike a regular file, a device or a pipe cannot be replaced by renaming.
   const bool is_replaceable = !fs::exists(path, failed) || fs::is_regular_file(path, failed);
-  const std::string place = is_replaceable ? path + ".partial" : path;
+  const std::string place = is_replaceable ? path + ".partial-" + std::to_string(::getpid()) : path;
   std::ofstream file(place, std::ios::binary);
   file << text;
   file.close();
