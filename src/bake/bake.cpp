@@ -337,7 +337,7 @@ Model bake(const Scene& given, BakeReport* report, const BakeProgress& progress)
   if (model.rigid.empty() && model.sliding.empty() && model.attached.empty() && model.prescribed.empty())
     monitor.warn("{}: no node is held or slides on a surface, so that the tissue is free to fly away; add constraints",
                  scene.file);
-  settle_joints(model);
+  settle_joints(scene.switched_off, model);
 
   add_fibres(scene, fibres, frame, model, monitor);
   scale_strength(scene, fibres, frame, model, report);

@@ -157,7 +157,7 @@ void copy_settings(const Scene& scene, const LocalFrame& frame, Model& model)
   model.scene_hash = scene.content.empty() ? "" : content_hash(scene.content);
 }
 
-/// The pose of a bone in the face frame: its shift and turn, or those of its joint at the pose's angle.
+/// The pose of a bone in the face frame: its shift and turn, plus those of its joint at the pose's angle.
 static Model::BonePose pose_of(const Scene& scene, const BonePose& pose, std::int32_t bone)
 {
   const auto has_bone = [&](const SceneJoint& joint) { return joint.bone == pose.bone; };
@@ -173,8 +173,8 @@ static Model::BonePose pose_of(const Scene& scene, const BonePose& pose, std::in
   for (Eigen::Index row = 0; row < 3; ++row)
     to_face.row(row) = axes[static_cast<std::size_t>(row)];
   const Vector3d at = to_vector(of_bone->joint.at);
-  const Vector3d shift = pose.angle * (to_face * to_vector(of_bone->joint.slide));
-  const Vector3d turn = pose.angle * (to_face * to_vector(of_bone->joint.axis));
+  const Vector3d shift = to_vector(pose.shift) + pose.angle * (to_face * to_vector(of_bone->joint.slide));
+  const Vector3d turn = to_vector(pose.turn) + pose.angle * (to_face * to_vector(of_bone->joint.axis));
   return { bone, to_array(shift), to_array(turn),
            in_face_frame(scene, to_array(of_bone->head ? head_of(*of_bone->head)->moved(at) : at)) };
 }

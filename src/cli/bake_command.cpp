@@ -1,5 +1,6 @@
 #include "cli/command.hpp"
 #include "cli/model_source.hpp"
+#include "cli/run_output.hpp"
 
 #include "frontalis/error.hpp"
 #include "frontalis/model/model_file.hpp"
@@ -30,9 +31,10 @@ void print_constraints(const Model& model)
   for (std::size_t c = 0; c < model.constraints.size(); ++c)
   {
     const auto holds = [c](const auto& node) { return node.constraint == static_cast<std::int32_t>(c); };
-    fmt::print("held by  {} {}: rigid {}, sliding {}\n", c, model.constraints[c],
-               std::count_if(model.rigid.begin(), model.rigid.end(), holds),
-               std::count_if(model.sliding.begin(), model.sliding.end(), holds));
+    const auto count = [&](const auto& nodes)
+    { return static_cast<std::size_t>(std::count_if(nodes.begin(), nodes.end(), holds)); };
+    fmt::print("held by  {} {}: {}\n", c, model.constraints[c],
+               restricted_text(count(model.rigid), count(model.sliding), count(model.attached)));
   }
 }
 
@@ -60,8 +62,8 @@ void bake_to_file(const BakeOptions& options)
   }
   fmt::print("voxels   {} of {:g} x {:g} x {:g} mm\n", model.voxels.size(), model.spacing[0] * 1e3,
              model.spacing[1] * 1e3, model.spacing[2] * 1e3);
-  fmt::print("nodes    {}, of which rigid {}, sliding {}\n", model.nodes.size(), model.rigid.size(),
-             model.sliding.size());
+  fmt::print("nodes    {}, of which {}\n", model.nodes.size(),
+             restricted_text(model.rigid.size(), model.sliding.size(), model.attached.size()));
   fmt::print("muscles  {}\n", model.muscles.size());
   fmt::print("skin     {} vertices, {} triangles\n", model.skin.vertices.size(), model.skin.triangles.size());
   if (!options.report && !summary.findings.empty())

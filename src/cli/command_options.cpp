@@ -22,6 +22,15 @@ void add_solver_options(CLI::App& command, SolverSettings& settings)
       ->check(CLI::Range(0, 1024));
 }
 
+std::vector<std::filesystem::path> package_places(const std::string& shared, const std::string& bundled,
+                                                  const std::string& source)
+{
+  std::error_code none;
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", none).parent_path();
+  return { program / "../share/frontalis" / shared, program / "../../share/frontalis" / shared,
+           program / ".." / bundled, std::filesystem::path(FRONTALIS_SOURCE_DIRECTORY) / source };
+}
+
 void check_seconds(double seconds)
 {
   if (!(seconds > 0) || !std::isfinite(seconds))

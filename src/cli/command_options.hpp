@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,11 @@ void add_backend_option(CLI::App& command, Backend& backend, bool automatic);
 
 /// Declares --backend and --threads.
 void add_solver_options(CLI::App& command, SolverSettings& settings);
+
+/// Places at which a file or folder of the package may be: installed (share/ beside bin/ or lib/frontalis/), bundled,
+/// or in the sources.
+std::vector<std::filesystem::path> package_places(const std::string& shared, const std::string& bundled,
+                                                  const std::string& source);
 
 /// Throws WrongUsage if --seconds is not a number greater than 0.
 void check_seconds(double seconds);

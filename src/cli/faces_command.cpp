@@ -57,7 +57,11 @@ std::vector<std::string> chosen_expressions(const FacesOptions& options, const M
 void measure_faces(FacesOptions& options)
 {
   if (options.people.empty())
-    options.people = FRONTALIS_SOURCE_DIRECTORY "/config/people.yaml";
+    for (const auto& place : package_places("config/people.yaml", "config/people.yaml", "config/people.yaml"))
+      if (options.people.empty() && std::filesystem::exists(place))
+        options.people = place.lexically_normal().string();
+  if (options.people.empty())
+    throw Error("config/people.yaml is not beside the program; --people must name it");
   check_output(options.json);
   check_output(options.table);
   const People people = read_people(options.people);

@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 
 namespace frontalis
 {
@@ -84,6 +85,10 @@ public:
     std::string text = json_.dump();
     text.resize((text.size() + 3) / 4 * 4, ' ');
     buffer_.resize((buffer_.size() + 3) / 4 * 4, '\0');
+    if (const std::size_t most = std::numeric_limits<std::uint32_t>::max(); buffer_.size() + text.size() + 28 > most)
+      throw Error(
+          fmt::format("the file would have {:.1f} GB; glTF allows 4.3: write fewer poses, or without fine lines",
+                      1e-9 * static_cast<double>(buffer_.size() + text.size())));
     std::string out = "glTF";
     const auto number = [&out](std::size_t value)
     {

@@ -313,11 +313,13 @@ void simulate(RunOptions& options)
     measure(options, *model, summary);
   if (run.folder)
     run.folder->finish(json_of(*model, summary));
-  if (run.plot)
-    run.plot->write();
+  print_result(*model, summary);
+  std::fflush(stdout);
+  // These need other programs, which may be missing.
   if (run.movie)
     run.movie->finish();
-  print_result(*model, summary);
+  if (run.plot)
+    run.plot->write();
   if (!summary.complete)
     throw Interrupted();
   if (summary.equilibrium && !summary.equilibrium->reached)

@@ -30,21 +30,12 @@ struct StabilityOptions
   std::string mesh_directory;  ///< folder of the meshes of the real head and face
 };
 
-// Folders in which files of the package may be: installed (share/ beside bin/ or lib/frontalis/), bundled, or sources.
-std::vector<fs::path> folders(const std::string& shared, const std::string& bundled, const std::string& source)
-{
-  std::error_code none;
-  const fs::path program = fs::read_symlink("/proc/self/exe", none).parent_path();
-  return { program / "../share/frontalis" / shared, program / "../../share/frontalis" / shared,
-           program / ".." / bundled, fs::path(FRONTALIS_SOURCE_DIRECTORY) / source };
-}
-
 // The folder of the cases' files: `given` or, if that is empty, the folder beside the program or in the sources.
 std::string stability_folder(const std::string& given)
 {
   if (!given.empty())
     return given;
-  for (const fs::path& folder : folders("stability", "stability", "test/stability"))
+  for (const fs::path& folder : package_places("stability", "stability", "test/stability"))
     if (fs::is_directory(folder))
       return folder.lexically_normal().string();
   throw Error(
@@ -61,7 +52,7 @@ std::shared_ptr<const Model> stability_scene(const StabilityOptions& options, co
   std::vector<fs::path> places{ options.scenes };
   if (options.scenes.empty())
   {
-    places = folders("config", "models/stability", "config");
+    places = package_places("config", "models/stability", "config");
     places.push_back(fs::path(stability_folder(options.cases)) / "scenes");
   }
   for (const fs::path& folder : places)

@@ -106,7 +106,12 @@ private:
     if (!shared_)
       place.check_known(meant[0], known);
     else if (!known.has(meant[0]))
-      meant.clear();
+    {
+      // A scene may have one of both sides.
+      meant = { name + "_left", name + "_right" };
+      meant.erase(std::remove_if(meant.begin(), meant.end(), [&](const auto& side) { return !known.has(side); }),
+                  meant.end());
+    }
     return meant;
   }
 

@@ -118,6 +118,8 @@ void read_law(Law law, const Node& node, Mapping& mapping, const SceneNames& nam
 
 void read_materials(const Node& tissues, const Node& node, Scene& scene, SceneNames& names)
 {
+  // A library may name surfaces that this scene lacks in materials that it does not use: see check_tissues().
+  SceneNames known_names = names;
   const auto read = [&](const Node& entry, Mapping& mapping, SceneMaterial& material)
   {
     const Node law = mapping.optional("law");
@@ -126,7 +128,7 @@ void read_materials(const Node& tissues, const Node& node, Scene& scene, SceneNa
     const auto known = physics::law_named(material.law);
     if (!known)
       return mapping.ignore_rest();
-    read_law(*known, entry, mapping, names, material);
+    read_law(*known, entry, mapping, known_names, material);
     read_viscosity(mapping.optional("viscosity"), material.viscosity);
     material.tension = mapping.optional("tension").number(Dimension::pressure, positive, 0);
     material.density = mapping.required("density", "a density greater than 0").number(Dimension::density, positive, 0);
@@ -138,7 +140,9 @@ void read_materials(const Node& tissues, const Node& node, Scene& scene, SceneNa
     const YAML::Node yaml = load_yaml(path, "tissues", "a mapping of materials");
     ReadingContext context{ Faults(path), node.context().length_unit };
     Names known{ "material", {}, true };
+    known_names.surfaces.complete = false;
     read_named(Node(yaml, "", 1, context), library, known, read);
+    known_names = names;
     if (!context.faults.empty())
       throw Error(context.faults.text());
   }

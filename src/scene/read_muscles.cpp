@@ -222,6 +222,8 @@ void read_muscles(const Node& node, Scene& scene, SceneNames& names)
       const Node volume = mapping.optional("volume");
       if (volume.given())
         muscle.volume = volume.reference(names.volumes);
+      if (volume.given() && mapping.has("material"))
+        entry.fault("'material' stands beside 'volume', which has one");
       read_fibres(mapping, names, muscle);
       read_shared(mapping, names, muscle, materials[one]);
       read_tension(mapping, scene, names, muscle);

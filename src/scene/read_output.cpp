@@ -86,7 +86,11 @@ static void read_head_landmarks(const Node& entry, Scene& scene, const SceneName
     {
       landmark.name = point.name;
       landmark.point = point;
-      scene.landmarks.push_back(landmark);
+      if (std::any_of(scene.landmarks.begin(), scene.landmarks.end(),
+                      [&](const SceneLandmark& other) { return other.name == point.name; }))
+        entry.fault("'{}' is a landmark already; name those that are meant in 'only'", point.name);
+      else
+        scene.landmarks.push_back(landmark);
     }
 }
 

@@ -67,6 +67,10 @@ void divide_forehead(Surface& surface, double voxel)
 void check_tissues(const Scene& scene, const Node& tissues, const SceneNames& names)
 {
   for (const SceneMaterial& material : scene.materials)
+    if (material.of_library && !material.along.empty())
+      Node("materials." + material.name + ".along", tissues.line(), tissues.context())
+          .check_known(material.along, names.surfaces);
+  for (const SceneMaterial& material : scene.materials)
     if (!material.about.empty())
       Node("materials." + material.name + ".families.about", material.of_library ? tissues.line() : material.line,
            tissues.context())
@@ -159,7 +163,11 @@ YAML::Node load_yaml(const std::string& path, const std::string& what, const std
   const std::string text = read_text(path, what);
   try
   {
-    root = YAML::Load(text);
+    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
+    if (documents.size() > 1)
+      throw Error(place(documents[1].Mark().line + 1) +
+                  "a second document begins here, after '---'; a file must be one");
+    root = documents.empty() ? YAML::Node() : documents[0];
   }
   catch (const YAML::Exception& error)
   {

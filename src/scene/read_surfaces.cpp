@@ -371,6 +371,11 @@ void read_surfaces(const Node& node, const Node& mesh_directory, const SceneOpti
       // An entry with the name of a part replaces that part of the set.
       if (std::any_of(entries.begin(), entries.end(), [&](const auto& other) { return other.first == part; }))
         continue;
+      if (names.surfaces.has(part))
+      {
+        entry.fault("its part '{}' is a surface already; name those 'parts' that are meant", part);
+        continue;
+      }
       surface.name = surface.shape->part = part;
       scene.surfaces.push_back(surface);
       names.surfaces.names.push_back(part);

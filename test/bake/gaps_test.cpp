@@ -68,6 +68,16 @@ Scene slit_block(double z, double voxel = 3e-3, bool slit = true, double end = 1
   return scene;
 }
 
+/// Tissue of 6 mm below a face of a block, bounded by its depth alone, with a slit.
+TEST(Slits, MayCutTissueThatHasADepthAlone)
+{
+  Scene scene = slit_block(10e-3);
+  scene.volumes[0].inside.clear();
+  scene.volumes[0].within = "block";
+  scene.volumes[0].depth_max = 6e-3;
+  EXPECT_GT(bake(scene).joints.size(), 0u);
+}
+
 /// Number of the body of each node. Nodes of the same voxel and joined nodes are in the same body.
 std::vector<std::size_t> bodies_of(const Model& model)
 {

@@ -2,6 +2,7 @@
 
 #include "bake/mesh/surface.hpp"
 #include "bake/mesh/mesh_faults.hpp"
+#include "bake/mesh/triangle_tree.hpp"
 
 #include "frontalis/error.hpp"
 
@@ -104,19 +105,50 @@ TEST_F(Import, AnInsideOutPieceIsTurnedAndACavityIsNot)
   EXPECT_NEAR(1e9 * signed_volume(surface.mesh) / (ball * (1000 - 125 + 1000)), 1, 0.02);
 }
 
+TEST_F(Import, AnInsideOutPieceBesideAnOpenOneIsTurnedAndAnInnerWallIsNot)
+{
+  TriangleMesh outer = sphere({ 0, 0, 0 }, 10), wall = sphere({ 0, 0, 0 }, 8), other = sphere({ 30, 0, 0 }, 10);
+  const auto open = [](TriangleMesh& mesh)
+  {
+    mesh.triangles.erase(std::remove_if(mesh.triangles.begin(), mesh.triangles.end(),
+                                        [&](const Triangle& t) { return mesh.vertices[t[0]][2] < -7; }),
+                         mesh.triangles.end());
+  };
+  open(outer);
+  open(wall);
+  flip(wall);
+  flip(other);
+  for (const bool closed : { true, false })
+  {
+    if (!closed)
+      open(other);
+    const LoadedSurface surface = load(together(together(outer, wall), other));
+    EXPECT_TRUE(told(surface, "1 piece inside-out; turned"));
+    const TriangleTree tree(surface.mesh);
+    EXPECT_NEAR(tree.winding_number({ 0, 0, 5e-3 }), 0, 0.1) << "in the cavity";
+    EXPECT_NEAR(tree.winding_number({ 0, 0, 9e-3 }), 1, 0.1) << "between the walls";
+    EXPECT_NEAR(tree.winding_number({ 30e-3, 0, 5e-3 }), 1, 0.1) << "in the other piece";
+  }
+}
+
 TEST_F(Import, HalvesOfAnyFormatAreMirrored)
 {
   const std::string file = folder_ / "half.stl";
   std::ofstream out(file);
   out << "solid half\n";
   const TriangleMesh half = box({ 5, 0, 0 }, { 10, 10, 10 });
+  // coordinates of files are rounded
+  TriangleMesh rounded = half;
+  for (Vector3& v : rounded.vertices)
+    v[0] += v[0] == 0 ? 2e-5 : 0;
   for (const Triangle& t : half.triangles)
   {
     if (half.vertices[t[0]][0] == 0 && half.vertices[t[1]][0] == 0 && half.vertices[t[2]][0] == 0)
       continue;
     out << "facet normal 0 0 0\nouter loop\n";
     for (const std::int32_t v : t)
-      out << "vertex " << half.vertices[v][0] << " " << half.vertices[v][1] << " " << half.vertices[v][2] << "\n";
+      out << "vertex " << rounded.vertices[v][0] << " " << rounded.vertices[v][1] << " " << rounded.vertices[v][2]
+          << "\n";
     out << "endloop\nendfacet\n";
   }
   out << "endsolid half\n";

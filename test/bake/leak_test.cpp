@@ -45,6 +45,19 @@ TEST_F(OpenSurfaces, AHeadOpenAtTheNeckHoldsItsTissue)
   EXPECT_TRUE(reported);
 }
 
+TEST_F(OpenSurfaces, ABoneWithoutTissueMayBeOpen)
+{
+  Scene scene = plain_scene(2e-3);
+  Surface bone = sphere_file("bone", 5e-3, [](const Vector3& v) { return v[2] > -0.9; });
+  scene.surfaces = { sphere_surface("head", { 0, 0, 0 }, 30e-3, 3e-3), bone };
+  scene.volumes = { volume_inside("tissue", { "head" }, "fat", true) };
+  scene.volumes[0].within = "head";
+  scene.volumes[0].depth_max = 10e-3;
+  scene.volumes[0].outside = { "bone" };
+  scene.skin.surface = "head";
+  EXPECT_NO_THROW(bake(scene));
+}
+
 TEST_F(OpenSurfaces, HolesThatAreProbablyFaultsAreWarnedOf)
 {
   const auto near = [](const Vector3& v, const Vector3& centre, double size)

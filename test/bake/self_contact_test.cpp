@@ -43,6 +43,15 @@ Scene two_blocks()
   return scene;
 }
 
+TEST(BakedSelfContact, surfaces_may_extend_far_beyond_the_tissue)
+{
+  Scene scene = two_blocks();
+  scene.surfaces[0].shape->centre[0] += 40e-3;
+  scene.surfaces[0].shape->size[0] += 80e-3;
+  scene.volumes[0].crop.upper[0] = 8e-3;
+  EXPECT_EQ(bake(scene).self_contacts.size(), 1u);
+}
+
 TEST(BakedSelfContact, surfaces_face_away_from_the_tissue)
 {
   const Model model = bake(two_blocks());

@@ -1,5 +1,7 @@
 // Muscles that are weak everywhere, or in a region.
 
+#include "frontalis/error.hpp"
+
 #include "bake/scene_pieces.hpp"
 
 #include <gtest/gtest.h>
@@ -48,6 +50,34 @@ TEST(Weakness, of_a_whole_muscle_leaves_its_passive_part)
   EXPECT_EQ(other.fibre_weight, healthy.fibre_weight);
   EXPECT_EQ(other.fibre_begin, healthy.fibre_begin);
   EXPECT_EQ(other.fibre_direction, healthy.fibre_direction);
+}
+
+TEST(Weakness, of_a_place_is_accepted_without_contraction)
+{
+  Scene scene = block_of_muscle(false);
+  scene.weakness = { { {}, 0.5, { 0, 2e-3, 2e-3 }, 8e-3, false } };
+  scene.switched_off = EffectSet().with(Effect::contraction);
+  EXPECT_TRUE(bake(scene).fibre_weight.empty());
+}
+
+TEST(Weakness, of_a_passive_muscle_needs_a_name_for_its_passive_part)
+{
+  Scene scene = block_of_muscle(true);
+  scene.muscles.push_back(scene.muscles[0]);
+  scene.muscles[1].name = "pull_passive";
+  scene.muscles[1].passive = false;
+  scene.muscles[1].volume = "other";
+  scene.volumes.push_back(volume_inside("other", { "block" }, "muscle", false));
+  scene.weakness = { { { "pull" }, 0.5 } };
+  try
+  {
+    bake(scene);
+    FAIL() << "two muscles have one name";
+  }
+  catch (const Error& error)
+  {
+    EXPECT_NE(std::string(error.what()).find("rename that muscle"), std::string::npos) << error.what();
+  }
 }
 
 TEST(Weakness, of_a_sphere_ends_at_its_radius_and_that_of_a_dose_fades)

@@ -38,6 +38,13 @@ std::string error_of(const std::string& surfaces, const std::string& muscles, co
   return {};
 }
 
+TEST(SetsOfSurfaces, DoNotShareNames)
+{
+  const std::string two = "  brow: {shape: forehead, parts: all}\n  other: {shape: forehead, parts: [skin]}\n";
+  EXPECT_NE(error_of(two, "  {}\n").find("surfaces.other: its part 'skin' is a surface already"), std::string::npos)
+      << error_of(two, "  {}\n");
+}
+
 const std::string all = "  brow: {shape: forehead, parts: all, dimensions: {height: 80}}\n";
 
 template <class Item>

@@ -52,6 +52,12 @@ TEST(SharedActionUnits, what_the_scene_lacks_is_left_out)
   EXPECT_EQ(scene.expressions.at("up").activation.at("pull_right"), 0.5);
   EXPECT_EQ(scene.expressions.at("mine").activation, (std::map<std::string, double>{ { "pull_left", 0.25 } }));
 
+  const auto text_of_one_side = std::regex_replace(
+      std::regex_replace(scene_text, std::regex(", pull_right: [^}]*\\}"), ""), std::regex("expressions.*\n"), "");
+  const Scene one_sided = read_scene(folder.write("scene.yaml", text_of_one_side));
+  EXPECT_EQ(one_sided.action_units.at("AU1").activation, (std::map<std::string, double>{ { "pull_left", 1 } }))
+      << "a face may have one of two muscles";
+
   folder.write("units.yaml", "unit: mm\naction_units:\n  AU1: {pull: 2}\n");
   try
   {

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_map>
 
 namespace frontalis
 {
@@ -74,20 +75,70 @@ TriangleMesh import_surface(const Surface& surface)
 }
 
 /// Whether an open mesh is inside-out, that is, whether the winding number with the largest magnitude in its box is
-/// negative.
-bool open_and_inside_out(const TriangleMesh& mesh)
+/// negative. If the mesh has several pieces, no winding number may be clearly positive.
+bool open_and_inside_out(const TriangleMesh& mesh, bool has_pieces = false)
 {
   const TriangleTree tree(mesh);
   const Box box = bounding_box(mesh);
-  double strongest = 0;
+  double strongest = 0, largest = 0;
   for (int i = 0; i < 216; ++i)
   {
     const double w = tree.winding_number(spread_point(box, i));
+    largest = std::max(largest, w);
     if (std::abs(w) > std::abs(strongest))
       strongest = w;
   }
   // Patches and domes have smaller winding numbers: they enclose too little for a decision.
-  return strongest < -0.75;
+  return strongest < -0.75 && !(has_pieces && largest > 0.75);
+}
+
+/// The triangles of one piece, with the vertices that they use.
+TriangleMesh piece_of(const TriangleMesh& mesh, const std::vector<std::int32_t>& piece, std::int32_t number)
+{
+  TriangleMesh part;
+  std::unordered_map<std::int32_t, std::int32_t> vertex_of;
+  for (std::size_t t = 0; t < piece.size(); ++t)
+    if (piece[t] == number)
+    {
+      Triangle& triangle = part.triangles.emplace_back(mesh.triangles[t]);
+      for (std::int32_t& v : triangle)
+      {
+        const auto [entry, added] = vertex_of.emplace(v, static_cast<std::int32_t>(part.vertices.size()));
+        if (added)
+          part.vertices.push_back(mesh.vertices[v]);
+        v = entry->second;
+      }
+    }
+  return part;
+}
+
+/// Turns the pieces of an open mesh that are inside-out, and returns how many. Such a piece encloses points for which
+/// its own winding number and that of the whole mesh are clearly negative; the wall of a cavity has a negative one by
+/// itself only. Pieces with few triangles enclose little and are left alone.
+std::size_t turn_pieces_of_open(TriangleMesh& mesh, const std::vector<std::int32_t>& piece)
+{
+  constexpr std::size_t least_triangles = 100;
+  std::vector<std::size_t> triangles(1 + *std::max_element(piece.begin(), piece.end()), 0);
+  for (const std::int32_t p : piece)
+    ++triangles[p];
+  const TriangleTree whole(mesh);
+  std::vector<bool> turn(triangles.size(), false);
+  for (std::size_t p = 0; p < turn.size(); ++p)
+    if (triangles[p] >= least_triangles)
+    {
+      const TriangleMesh part = piece_of(mesh, piece, static_cast<std::int32_t>(p));
+      const TriangleTree tree(part);
+      const Box box = bounding_box(part);
+      for (int i = 0; i < 216 && !turn[p]; ++i)
+      {
+        const Vector3d place = spread_point(box, i);
+        turn[p] = tree.winding_number(place) < -0.75 && whole.winding_number(place) < -0.75;
+      }
+    }
+  for (std::size_t t = 0; t < piece.size(); ++t)
+    if (turn[piece[t]])
+      std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
+  return static_cast<std::size_t>(std::count(turn.begin(), turn.end(), true));
 }
 
 /// Regions that a mesh encloses twice or inside-out. Only components of the mesh with crossing triangles are examined.
@@ -283,21 +334,21 @@ LoadedSurface load_surface(const Surface& surface, double unit)
                                           length_text(faults.spike_height, unit),
                                           place_text(faults.spikes.place, unit)));
   const bool closed = unbalanced_edges(mesh).empty();
+  std::size_t nested = 0, turned = 0;
   if (closed)
-  {
-    std::size_t nested = 0;
-    const std::size_t turned = turn_inside_out_pieces(mesh, faults.piece, nested);
-    if (turned > 0)
-      found(faults.crossing_piece.size() == 1 ? "was inside-out; turned"
-                                              : count_text(turned, "piece", "pieces") + " inside-out; turned");
-    if (nested > 0)
-      found(count_text(nested, "piece lies", "pieces lie") + " inside another and face outwards: taken as solid there");
-  }
-  else if (open_and_inside_out(mesh))
+    turned = turn_inside_out_pieces(mesh, faults.piece, nested);
+  const std::size_t pieces = faults.crossing_piece.size();
+  if (!closed && open_and_inside_out(mesh, pieces > 1))
   {
     flip(mesh);
     found("was inside-out; turned");
   }
+  if (!closed && pieces > 1)
+    turned = turn_pieces_of_open(mesh, faults.piece);
+  if (turned > 0)
+    found(pieces == 1 ? "was inside-out; turned" : count_text(turned, "piece", "pieces") + " inside-out; turned");
+  if (nested > 0)
+    found(count_text(nested, "piece lies", "pieces lie") + " inside another and face outwards: taken as solid there");
   refuse_faults(mesh, faults, closed, unit);
   describe(faults, unit, found);
   return loaded;

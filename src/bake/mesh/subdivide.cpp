@@ -45,7 +45,7 @@ struct EdgeTable
         {
           Edge& edge = edges[entry->second];
           if (edge.faces[1] >= 0 || edge.ends[0] != to)
-            throw failure("a control cage must be a manifold with faces of one orientation; it is not at {} mm",
+            throw failure("a control cage must be a manifold with faces of one orientation; it is not at {}",
                           place_text(0.5 * (mesh.vertices[from] + mesh.vertices[to]), 1e-3));
           edge.faces[1] = static_cast<std::int32_t>(f);
         }
@@ -206,10 +206,13 @@ PolygonMesh with_mirror_image(const PolygonMesh& half, int axis, std::vector<std
 {
   PolygonMesh whole = half;
   std::vector<std::int32_t> image(half.vertices.size());
+  double extent = 0;
+  for (const Vector3d& p : half.vertices)
+    extent = std::max(extent, p.cwiseAbs().maxCoeff());
   for (std::size_t v = 0; v < half.vertices.size(); ++v)
   {
     Vector3d p = half.vertices[v];
-    if (std::abs(p[axis]) < 1e-9)
+    if (std::abs(p[axis]) < 1e-5 * extent)  // files have rounded coordinates
     {
       whole.vertices[v][axis] = 0;
       image[v] = static_cast<std::int32_t>(v);

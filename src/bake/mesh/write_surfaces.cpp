@@ -39,14 +39,22 @@ void write_surfaces(const Scene& scene, const std::string& folder)
     {
       throw Error(place_in_scene(scene, "surface", surface) + ": " + error.what());
     }
-    const std::string path = path_of(surface);
-    std::ofstream file(path);
+    // The file appears when it is whole.
+    const std::string path = path_of(surface), partial = path + ".partial";
+    std::ofstream file(partial);
     for (const Vector3& p : mesh.vertices)
-      file << fmt::format("v {:.6f} {:.6f} {:.6f}\n", p[0], p[1], p[2]);
+      file << fmt::format("v {:.9g} {:.9g} {:.9g}\n", p[0], p[1], p[2]);
     for (const Triangle& t : mesh.triangles)
       file << fmt::format("f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1);
-    if (!file.flush())
+    file.close();
+    std::error_code failed;
+    if (file)
+      std::filesystem::rename(partial, path, failed);
+    if (!file || failed)
+    {
+      std::filesystem::remove(partial, ignored);
       throw Error(path + ": cannot be written");
+    }
   }
 }
 

@@ -44,7 +44,7 @@ void put(const std::map<std::int32_t, Entry>& entries, std::vector<Entry>& list)
 
 }  // namespace
 
-void settle_joints(Model& model)
+void settle_joints(const EffectSet& switched_off, Model& model)
 {
   std::map<std::int32_t, std::vector<std::int32_t>> groups;  // nodes joined to each master
   std::map<std::int32_t, std::int32_t> master;
@@ -63,7 +63,8 @@ void settle_joints(Model& model)
   {
     std::vector<std::int32_t> group{ to };
     group.insert(group.end(), nodes.begin(), nodes.end());
-    if (share(group, rigid))
+    // A restriction that is about to be switched off holds no nodes together.
+    if (!switched_off.has(Effect::rigid_nodes) && share(group, rigid))
     {
       for (const std::int32_t node : group)
       {
@@ -72,7 +73,7 @@ void settle_joints(Model& model)
       }
       continue;
     }
-    if (share(group, attached))
+    if (!switched_off.has(Effect::attachment) && share(group, attached))
     {
       for (const std::int32_t node : group)
         sliding.erase(node);

@@ -213,26 +213,26 @@ std::vector<char> GapWalls::cells_with_gaps(const Volumes& volumes, const Grid& 
     const TriangleMesh& mesh = walls_[w]->mesh();
     // Marks are collected per triangle and joined afterwards, because threads must not share cells.
     std::vector<std::vector<Vector3d>> marks(mesh.triangles.size());
-    parallel_for(
-        monitor, mesh.triangles.size(), 256,
-        [&](std::size_t t)
-        {
-          const auto v = corners(mesh, mesh.triangles[t]);
-          if (!all.intersects(Box(v[0]).extend(v[1]).extend(v[2])))
-            return;
-          const Vector3d normal = (v[1] - v[0]).cross(v[2] - v[0]).normalized();
-          each_point(v, step,
-                     [&](const Vector3d& p)
-                     {
-                       if (!all.contains(p))
-                         return;
-                       const double width = w < bodies_ ? gap_at(volumes, p, sign_[w] * normal, widest_gap * edge) : 0;
-                       if (w < bodies_ && !(width > 0))
-                         return;
-                       for (double at = 0; at < width + step; at += step)
-                         marks[t].push_back(p + sign_[std::min(w, sign_.size() - 1)] * std::min(at, width) * normal);
-                     });
-        });
+    parallel_for(monitor, mesh.triangles.size(), 256,
+                 [&](std::size_t t)
+                 {
+                   const auto v = corners(mesh, mesh.triangles[t]);
+                   if (!all.intersects(Box(v[0]).extend(v[1]).extend(v[2])))
+                     return;
+                   // `slits` have no side
+                   const Vector3d normal = (w < bodies_ ? sign_[w] : 1) * (v[1] - v[0]).cross(v[2] - v[0]).normalized();
+                   each_point(v, step,
+                              [&](const Vector3d& p)
+                              {
+                                if (!all.contains(p))
+                                  return;
+                                const double width = w < bodies_ ? gap_at(volumes, p, normal, widest_gap * edge) : 0;
+                                if (w < bodies_ && !(width > 0))
+                                  return;
+                                for (double at = 0; at < width + step; at += step)
+                                  marks[t].push_back(p + std::min(at, width) * normal);
+                              });
+                 });
     for (const auto& points : marks)
       std::for_each(points.begin(), points.end(), mark);
   }

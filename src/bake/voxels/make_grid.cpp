@@ -13,7 +13,7 @@ constexpr double least_voxels = 8;
 constexpr double most_voxels = 2.5e8;  // eight node indices per voxel must be below 2^31
 // The measured peak is 230 to 270 bytes per voxel for about a million voxels. The rest is for scenes with more muscles.
 constexpr double bytes_per_voxel = 400;
-constexpr double bytes_per_cell = 0.15;
+constexpr double bytes_per_cell = 0.15, bytes_per_cell_of_gaps = 7;  // Gaps marks and labels every cell
 constexpr int samples = 2000;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
@@ -96,7 +96,10 @@ Grid make_grid(const Scene& scene, const Volumes& volumes)
   // Cells along an axis are counted with 32 bits, however few of them are tissue.
   const bool absurd = cells.maxCoeff() > 1e9 || count > 1e15;
   const double voxels = absurd ? count : estimated_voxels(volumes, box, count);
-  const double bytes = bytes_per_voxel * voxels + bytes_per_cell * count;
+  const bool has_gaps =
+      scene.accuracy.gaps == "parted" ||
+      std::any_of(scene.volumes.begin(), scene.volumes.end(), [](const Volume& v) { return !v.slits.empty(); });
+  const double bytes = bytes_per_voxel * voxels + (bytes_per_cell + (has_gaps ? bytes_per_cell_of_gaps : 0)) * count;
   const double available = available_memory();
   if (voxels > most_voxels || bytes > available)
     throw failure("{}{} voxels of {} and about {:.3g} GB, and {:.3g} GB are free; at most {} voxels are possible{}",

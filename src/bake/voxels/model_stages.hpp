@@ -124,7 +124,8 @@ void attach_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const Lo
 
 /// Makes the joints of flaps agree with the restrictions of their nodes. Joined nodes rest at the same place and are
 /// therefore restricted alike, unless the tissue on the two sides of a gap is attached to a bone differently.
-void settle_joints(Model& model);
+/// Restrictions by effects in `switched_off` do not count, because the bake leaves them out.
+void settle_joints(const EffectSet& switched_off, Model& model);
 
 /// Removes loose components of voxels. Common faces connect voxels, common edges or corners do not. Keeps the largest
 /// component, and all others that have a restricted node and at least a hundredth as many voxels as the largest.

@@ -18,7 +18,7 @@ constexpr double search_distance = 0.75;
 // Smallest magnitude of area_behind() of a surface that is a boundary of the tissue.
 constexpr double least_agreement = 0.2;
 
-// The area with tissue behind it minus the area with tissue in front of it, divided by the whole area.
+// The area with tissue behind it minus the area with tissue in front of it, divided by the area with tissue on a side.
 double area_behind(const TriangleMesh& mesh, const LocalFrame& frame, const Model& model, const VoxelIndex& voxels)
 {
   const Vector3d spacing = to_vector(model.spacing);
@@ -35,8 +35,9 @@ double area_behind(const TriangleMesh& mesh, const LocalFrame& frame, const Mode
     const Vector3d normal = (b - a).cross(c - a), centre = frame.to_local(Vector3d((a + b + c) / 3));
     const double area = 0.5 * normal.norm();
     const Vector3d step = frame.turn(normal) * (search_distance * spacing.maxCoeff() / std::max(normal.norm(), 1e-30));
-    behind += area * (int(has_tissue(centre - step)) - int(has_tissue(centre + step)));
-    all += area;
+    const bool is_behind = has_tissue(centre - step), is_in_front = has_tissue(centre + step);
+    behind += area * (int(is_behind) - int(is_in_front));
+    all += is_behind || is_in_front ? area : 0;
   }
   return all > 0 ? behind / all : 0;
 }

@@ -40,7 +40,8 @@ std::size_t hole_in_front(const std::vector<MeshFaults::Hole>& holes, const std:
   return std::max_element(votes.begin(), votes.end()) - votes.begin();
 }
 
-void check_opening(const Scene& scene, const Volumes& volumes, const Volumes::Entry& entry, const PreparedSurface& body)
+void check_opening(const Scene& scene, const Volumes& volumes, const Volumes::Entry& entry, const PreparedSurface& body,
+                   bool holds_tissue)
 {
   const Box box = body.box().intersection(to_box(entry.volume->crop)).intersection(volumes.tissue_box());
   if (body.closed() || box.isEmpty())
@@ -57,7 +58,8 @@ void check_opening(const Scene& scene, const Volumes& volumes, const Volumes::En
     if (w <= clear_winding)
       unclear.push_back(p);
   }
-  if (inside > 0 && static_cast<double>(unclear.size()) <= most_unclear * inside)
+  // A body outside of the tissue does no harm where it encloses none of it.
+  if (inside == 0 ? !holds_tissue : static_cast<double>(unclear.size()) <= most_unclear * inside)
     return;
   const auto holes = find_holes(body.mesh());
   std::string where = "edges at which its triangles do not meet";
@@ -109,12 +111,12 @@ void check_openings(const Scene& scene, const Volumes& volumes)
 {
   for (const Volumes::Entry& entry : volumes.entries())
   {
-    std::vector<std::size_t> bodies = entry.inside;
-    bodies.insert(bodies.end(), entry.outside.begin(), entry.outside.end());
     if (entry.closed_by)
-      bodies.insert(bodies.begin(), *entry.closed_by);
-    for (const std::size_t b : bodies)
-      check_opening(scene, volumes, entry, volumes.body(b));
+      check_opening(scene, volumes, entry, volumes.body(*entry.closed_by), true);
+    for (const std::size_t b : entry.inside)
+      check_opening(scene, volumes, entry, volumes.body(b), true);
+    for (const std::size_t b : entry.outside)
+      check_opening(scene, volumes, entry, volumes.body(b), false);
   }
 }
 

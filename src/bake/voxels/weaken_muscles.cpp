@@ -68,6 +68,10 @@ void weaken_muscles(const Scene& scene, const LocalFrame& frame, Model& model, B
       if (!of.passive || kept == 1)
         continue;
       const auto part = passive_part.emplace(muscle[f], model.muscles.size());
+      if (part.second && std::any_of(model.muscles.begin(), model.muscles.end(),
+                                     [&](const Muscle& other) { return other.name == of.name + "_passive"; }))
+        throw failure("{}: weakness: muscle '{}' needs the name {}_passive for its passive part; rename that muscle",
+                      scene.file, of.name, of.name);
       if (part.second)
         model.muscles.push_back({ of.name + "_passive", of.stress_reference, true, of.tension_length });
       add(part.first->second, (1 - kept) * weight[f], direction[f]);
@@ -77,7 +81,8 @@ void weaken_muscles(const Scene& scene, const LocalFrame& frame, Model& model, B
   for (std::size_t w = 0; w < weakens.size(); ++w)
   {
     const SceneWeakness& weakness = scene.weakness[w];
-    if (weakness.radius > 0 && weakness.keeps < 1 && !weakens[w])
+    const bool has_fibres = !scene.switched_off.has(Effect::contraction);
+    if (has_fibres && weakness.radius > 0 && weakness.keeps < 1 && !weakens[w])
       throw failure("{}: weakness: no voxel of {} lies within {} of {}; check its place and radius", scene.file,
                     weakness.muscles.empty() ? "a muscle" : fmt::format("{}", fmt::join(weakness.muscles, ", ")),
                     length_text(weakness.radius, scene.unit), place_text(to_vector(weakness.centre), scene.unit));

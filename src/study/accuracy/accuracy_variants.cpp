@@ -59,6 +59,14 @@ std::string edge_text(const Vector3& voxel)
   return text + " mm";
 }
 
+// Gives voxels another edge along x, and the same proportions as before.
+void set_edge(AccuracyProfile& profile, double edge)
+{
+  const double before = profile.voxel[0];
+  for (double& along : profile.voxel)
+    along = along == before ? edge : edge * (along / before);
+}
+
 template <class T, class Set>
 std::vector<AccuracySetting> sweep(const AccuracySetting& standard, const std::vector<T>& values, Set&& set)
 {
@@ -86,7 +94,7 @@ std::vector<Sweep> knob_sweeps(const AccuracyPlan& plan, double critical)
   std::vector<Backend> backends = available_backends();
   if (quick)
     backends.erase(std::remove(backends.begin(), backends.end(), "reference"), backends.end());
-  return { { "voxel", "voxel edge", sweep(s, edges, [](auto& to, double edge) { to.profile.voxel.fill(edge); }) },
+  return { { "voxel", "voxel edge", sweep(s, edges, [](auto& to, double edge) { set_edge(to.profile, edge); }) },
            { "samples", "sampling density",
              sweep(s, quick ? Numbers{ 2, 8 } : Numbers{ 1, 2, 8 },
                    [](auto& to, double n) { to.profile.samples = static_cast<int>(n); }) },
@@ -97,7 +105,7 @@ std::vector<Sweep> knob_sweeps(const AccuracyPlan& plan, double critical)
              sweep(s, attached_edges,
                    [](auto& to, double edge)
                    {
-                     to.profile.voxel.fill(edge);
+                     set_edge(to.profile, edge);
                      to.profile.boundary = "true";
                      to.profile.fill_min = std::min(to.profile.fill_min, 0.05);
                      to.profile.time_step = "assembled";
@@ -145,7 +153,7 @@ std::vector<AccuracySetting> combinations(const AccuracyPlan& plan, double edge,
       for (const double factor : { 0, 4, 8 })  // 0: the standard setting's mass scaling
       {
         AccuracySetting setting = plan.standard;
-        setting.profile.voxel.fill(edge);
+        set_edge(setting.profile, edge);
         setting.profile.assumed_strain = assumed_strain;
         setting.profile.time_step = form;
         if (factor > 0)
@@ -159,7 +167,7 @@ AccuracySetting reference_setting(const AccuracySetting& standard, double edge)
 {
   AccuracySetting setting = standard;
   AccuracyProfile& profile = setting.profile;
-  profile.voxel.fill(edge);
+  set_edge(profile, edge);
   profile.assumed_strain = true;
   profile.integration = "one_point";
   profile.time_step = "assembled";

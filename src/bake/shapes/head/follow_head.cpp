@@ -1,5 +1,6 @@
 #include "bake/shapes/head/follow_head.hpp"
 
+#include "bake/messages.hpp"
 #include "bake/shapes/head/head.hpp"
 
 namespace frontalis
@@ -106,7 +107,15 @@ Scene following_head(const Scene& given)
   const auto first = std::find_if(scene.surfaces.begin(), scene.surfaces.end(), has_head);
   if (first == scene.surfaces.end() || (first->shape->dimensions.empty() && first->shape->tissue == 1))
     return scene;
-  const auto head = head_of(*first->shape);
+  std::shared_ptr<const Head> head;
+  try
+  {
+    head = head_of(*first->shape);
+  }
+  catch (const Error& error)
+  {
+    throw Error(place_in_scene(scene, "surface", *first) + ": " + error.what());
+  }
   const Follower follower(*head);
   for (Surface& surface : scene.surfaces)
     if (surface.shape && surface.shape->kind == Shape::Kind::box)
@@ -118,6 +127,10 @@ Scene following_head(const Scene& given)
         follower.move(curve);
       for (Shape::Depth& depth : surface.shape->depths)
         follower.move(depth.at);
+      if (surface.shape->below)  // a surface above it in the file, which has been moved
+        surface.shape->below = std::make_shared<const Surface>(
+            *std::find_if(scene.surfaces.begin(), scene.surfaces.end(),
+                          [&](const Surface& other) { return other.name == surface.shape->below->name; }));
     }
   for (Volume& volume : scene.volumes)
   {
