@@ -1,10 +1,8 @@
 #include "frontalis/bake/bake.hpp"
 
-#include "bake/check_holes.hpp"
-#include "bake/check_magnitudes.hpp"
-#include "bake/check_sides.hpp"
+#include "bake/checks.hpp"
 #include "bake/fibres/fibres.hpp"
-#include "bake/size_text.hpp"
+#include "bake/messages.hpp"
 #include "bake/shapes/head/follow_head.hpp"
 #include "bake/voxels/contact_bodies.hpp"
 #include "bake/voxels/gaps.hpp"
@@ -65,12 +63,6 @@ void find_filled_surfaces(const Scene& scene, const PreparedSurfaces& surfaces, 
   for (const Volume& volume : scene.volumes)
     for (const auto* list : { &volume.closed_by, &volume.inside, &volume.outside, &volume.without, &volume.slits })
       named.insert(list->begin(), list->end());
-  const auto is_tissue = [&](const Vector3d& p)
-  {
-    return std::any_of(volumes.entries().begin(), volumes.entries().end(),
-                       [&](const Volumes::Entry& entry)
-                       { return entry.volume->tissue && membership(volumes, entry, p) == Membership::inside; });
-  };
   for (const Surface& given : scene.surfaces)
   {
     if (given.file.empty() || named.count(given.name) > 0)
@@ -83,7 +75,7 @@ void find_filled_surfaces(const Scene& scene, const PreparedSurfaces& surfaces, 
       if (const Vector3d p = spread_point(surface.box(), i); surface.tree().winding_number(p) > 0.5)
       {
         ++inside;
-        filled += is_tissue(p) ? 1 : 0;
+        filled += in_tissue(volumes, p) ? 1 : 0;
       }
     if (filled > filled_a_little * inside)
       monitor.warn(

@@ -1,6 +1,5 @@
-#include "bake/check_holes.hpp"
+#include "bake/checks.hpp"
 
-#include "bake/check_sides.hpp"
 #include "bake/mesh/mesh_faults.hpp"
 #include "bake/messages.hpp"
 

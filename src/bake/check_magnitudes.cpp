@@ -1,4 +1,4 @@
-#include "bake/check_magnitudes.hpp"
+#include "bake/checks.hpp"
 
 #include "bake/messages.hpp"
 #include "frontalis/physics/materials/lookup.hpp"

@@ -1,4 +1,4 @@
-#include "bake/check_sides.hpp"
+#include "bake/checks.hpp"
 
 #include "bake/messages.hpp"
 

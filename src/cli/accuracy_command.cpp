@@ -62,15 +62,16 @@ AccuracyProfile standard_profile(const Scene& scene, bool chosen)
   return scene.accuracy;
 }
 
-// The activations of the chosen expression or else of the model's first expression. If the model has no expressions:
-// 0.75 for all muscles.
-std::vector<float> activation_of(const Model& model, const AccuracyOptions& options)
+// The chosen expression or else the model's first expression. If the model has no expressions: 0.75 for all muscles.
+Controls controls_of(const Model& model, const AccuracyOptions& options)
 {
   if (!options.expression.empty())
-    return expression_controls(model, options.expression).activation;
+    return expression_controls(model, options.expression);
   if (!model.expressions.empty())
-    return expression_controls(model, model.expressions.front().name).activation;
-  return std::vector<float>(model.muscles.size(), 0.75F);
+    return expression_controls(model, model.expressions.front().name);
+  Controls controls = rest_controls(model);
+  std::fill(controls.activation.begin(), controls.activation.end(), 0.75F);
+  return controls;
 }
 
 void check_numbers(const AccuracyOptions& options)
@@ -115,7 +116,7 @@ ClosedForm scene_subject(const AccuracyOptions& options)
   plan.standard.profile = standard_profile(scene, !options.source.scene.accuracy.empty());
   plan.profiles = scene.profiles;
   plan.frame_rate = scene.time.frame_rate;
-  plan.history = { {}, options.quick ? 0.2 : 0.3, options.quick ? 0.1 : 0.3 };
+  plan.history = { {}, {}, options.quick ? 0.2 : 0.3, options.quick ? 0.1 : 0.3 };
   for (const double factor :
        options.quick ? std::vector<double>{ 2, 1.5, 1, 0.75, 0.5 } : std::vector<double>{ 1.5, 1, 0.75, 0.5, 0.375 })
     plan.edges.push_back(factor * plan.standard.profile.voxel[0]);
@@ -131,10 +132,14 @@ ClosedForm scene_subject(const AccuracyOptions& options)
                     [scene](const AccuracySetting& setting) {
                       return bake_interruptibly(scene_with(scene, setting), nullptr, [](const std::string&, double) {});
                     } };
-  // All models have the same muscles. Their names come from the coarsest model, which is baked fastest.
+  // All models have the same muscles and bones. Their names come from the coarsest model, which is baked fastest.
   AccuracySetting coarsest = plan.standard;
   coarsest.profile.voxel.fill(plan.edges.front());
-  plan.history.activation = activation_of(subject.maker.bake(coarsest), options);
+  const Controls controls = controls_of(subject.maker.bake(coarsest), options);
+  plan.history.activation = controls.activation;
+  if (std::any_of(controls.bone.begin(), controls.bone.end(),
+                  [](const auto& bone) { return !(bone == RigidTransform()); }))
+    plan.history.bone = controls.bone;
   return subject;
 }
 
@@ -194,6 +199,8 @@ void write_outputs(const AccuracyFindings& findings, const AccuracyOptions& opti
              report.substr(begin, report.find("\n\n|") - begin), path);
   try
   {
+    for (const char* extension : { ".png", ".svg" })
+      std::filesystem::remove(path + extension);  // without gnuplot the plot of an earlier study would stay
     write_plot(accuracy_plot(findings, title), path);
     fmt::print(", .png, .svg\n");
   }
@@ -283,10 +290,9 @@ void add_accuracy_command(CLI::App& app)
       ->required();
   add_scene_options(*command, options->source);
   command
-      ->add_option(
-          "--knobs", options->knobs,
-          "vary only these, without combinations: voxel, samples, fill_min, hourglass, integration, precision, "
-          "share, time_step, mass_scaling, bulk_modulus_max, time_scaling, backend, profiles")
+      ->add_option("--knobs", options->knobs,
+                   "vary only these, without combinations: voxel, samples, fill_min, boundary, hourglass, integration, "
+                   "precision, share, time_step, mass_scaling, bulk_modulus_max, time_scaling, backend, profiles")
       ->delimiter(',');
   add_positive(*command, "--voxels", options->voxels, "voxel edges, coarse to fine [mm]; the last is the reference's")
       ->delimiter(',');

@@ -1,8 +1,8 @@
 #include "cli/command.hpp"
 #include "cli/model_source.hpp"
-#include "cli/run_output.hpp"
 
 #include "frontalis/error.hpp"
+#include "frontalis/model/effects.hpp"
 #include "frontalis/model/model_file.hpp"
 #include "frontalis/study/step_time.hpp"
 
@@ -29,13 +29,8 @@ struct BakeOptions
 void print_constraints(const Model& model)
 {
   for (std::size_t c = 0; c < model.constraints.size(); ++c)
-  {
-    const auto holds = [c](const auto& node) { return node.constraint == static_cast<std::int32_t>(c); };
-    const auto count = [&](const auto& nodes)
-    { return static_cast<std::size_t>(std::count_if(nodes.begin(), nodes.end(), holds)); };
     fmt::print("held by  {} {}: {}\n", c, model.constraints[c],
-               restricted_text(count(model.rigid), count(model.sliding), count(model.attached)));
-  }
+               restricted_nodes_text(model, static_cast<std::int32_t>(c)));
 }
 
 void bake_to_file(const BakeOptions& options)
@@ -62,8 +57,7 @@ void bake_to_file(const BakeOptions& options)
   }
   fmt::print("voxels   {} of {:g} x {:g} x {:g} mm\n", model.voxels.size(), model.spacing[0] * 1e3,
              model.spacing[1] * 1e3, model.spacing[2] * 1e3);
-  fmt::print("nodes    {}, of which {}\n", model.nodes.size(),
-             restricted_text(model.rigid.size(), model.sliding.size(), model.attached.size()));
+  fmt::print("nodes    {}, of which {}\n", model.nodes.size(), restricted_nodes_text(model));
   fmt::print("muscles  {}\n", model.muscles.size());
   fmt::print("skin     {} vertices, {} triangles\n", model.skin.vertices.size(), model.skin.triangles.size());
   if (!options.report && !summary.findings.empty())

@@ -82,7 +82,7 @@ void Run::observe()
     summary.ledger = solver.ledger();
   if (fine_lines)
   {
-    fine_lines->add_to(summary.end, true);
+    options.to_equilibrium ? fine_lines->add_settled(summary.end) : fine_lines->add_to(summary.end, true);
     summary.fine_lines += fine_lines->seconds();
   }
   if (!summary.monitor.finite || !is_finite(summary.end))
@@ -251,7 +251,8 @@ void measure(const RunOptions& options, const Model& model, RunSummary& summary)
   };
   try
   {
-    summary.wrinkles = WrinkleMeter(summary.rest, model.skin.triangles, settings, go_on).measure(summary.end, go_on);
+    const WrinkleMeter meter(rest_in_face(model), model.skin.triangles, settings, go_on);
+    summary.wrinkles = meter.measure(summary.end, go_on);
   }
   catch (const Interrupted&)
   {
@@ -314,8 +315,7 @@ void simulate(RunOptions& options)
   if (run.folder)
     run.folder->finish(json_of(*model, summary));
   print_result(*model, summary);
-  std::fflush(stdout);
-  // These need other programs, which may be missing.
+  std::fflush(stdout);  // what follows needs other programs, which may be missing
   if (run.movie)
     run.movie->finish();
   if (run.plot)

@@ -169,19 +169,12 @@ void print_inverted(const Model& model, const Monitor& monitor)
 
 }  // namespace
 
-std::string restricted_text(std::size_t rigid, std::size_t sliding, std::size_t attached)
-{
-  return fmt::format("rigid {}, sliding {}{}", rigid, sliding,
-                     attached > 0 ? fmt::format(", attached {}", attached) : "");
-}
-
 void print_set_up(const Model& model, const RunSummary& summary)
 {
   fmt::print("backend            {}\n", summary.backend);
   fmt::print("voxels             {} of {:g} x {:g} x {:g} mm\n", model.voxels.size(), model.spacing[0] * 1e3,
              model.spacing[1] * 1e3, model.spacing[2] * 1e3);
-  fmt::print("nodes              {}, of which {}\n", model.nodes.size(),
-             restricted_text(model.rigid.size(), model.sliding.size(), model.attached.size()));
+  fmt::print("nodes              {}, of which {}\n", model.nodes.size(), restricted_nodes_text(model));
   fmt::print("time step          {:.3f} us\n", summary.time_step * 1e6);
   std::fflush(stdout);
 }

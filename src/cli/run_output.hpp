@@ -36,8 +36,6 @@ struct RunSummary
 };
 
 /// Prints backend, voxels, nodes and time step, before the run.
-/// "rigid 3, sliding 5, attached 7": numbers of restricted nodes; attached ones only if there are any.
-std::string restricted_text(std::size_t rigid, std::size_t sliding, std::size_t attached);
 void print_set_up(const Model& model, const RunSummary& summary);
 
 /// Prints the motion of the landmarks, the energies and the speed.

@@ -91,7 +91,13 @@ EffectDescription contact_description()
 {
   return { Effect::contact,
            found,
-           [](Model& model, EffectSet) { model.contacts.clear(); },
+           [](Model& model, EffectSet)
+           {
+             // Bodies that are only shown stay.
+             const auto touches = [](const Contact& contact) { return !contact.points.empty(); };
+             model.contacts.erase(std::remove_if(model.contacts.begin(), model.contacts.end(), touches),
+                                  model.contacts.end());
+           },
            check,
            [](ModelWriter& archive, const Model& model) { exchange_contacts(archive, model.contacts); },
            [](ModelReader& archive, Model& model) { exchange_contacts(archive, model.contacts); },

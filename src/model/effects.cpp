@@ -336,6 +336,18 @@ std::vector<TouchedBody> touched_bodies(const Model& model)
   return bodies;
 }
 
+std::string restricted_nodes_text(const Model& model, std::int32_t constraint)
+{
+  const auto count = [constraint](const auto& nodes)
+  {
+    return std::count_if(nodes.begin(), nodes.end(),
+                         [&](const auto& node) { return constraint < 0 || node.constraint == constraint; });
+  };
+  const auto attached = count(model.attached);
+  return fmt::format("rigid {}, sliding {}{}", count(model.rigid), count(model.sliding),
+                     attached > 0 ? fmt::format(", attached {}", attached) : "");
+}
+
 std::vector<std::int32_t> moving_bones(const Model& model)
 {
   std::vector<std::int32_t> bone(model.nodes.size(), -1);

@@ -83,19 +83,6 @@ void add_triangles(const RenderMesh& mesh, const std::array<double, 3>& centre, 
 
 }  // namespace
 
-SkinState rest_in_face(const Model& model)
-{
-  SkinState skin;
-  const auto narrow = [](const std::array<double, 3>& p) -> std::array<float, 3> {
-    return { { static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]) } };
-  };
-  std::transform(model.skin.vertices.begin(), model.skin.vertices.end(), std::back_inserter(skin.vertices), narrow);
-  std::transform(model.landmark_positions.begin(), model.landmark_positions.end(), std::back_inserter(skin.landmarks),
-                 narrow);
-  to_face_frame(model, skin);
-  return skin;
-}
-
 bool is_publishable(const SkinState& skin, const Model& model)
 {
   return skin.vertices.size() == model.skin.vertices.size() && skin.normals.size() == skin.vertices.size() &&

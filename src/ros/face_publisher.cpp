@@ -100,6 +100,7 @@ void FacePublisher::start(std::shared_ptr<const Model> model, const std::string&
     wrenches_.emplace_back(handle_, "wrench/" + shape.name + (named_like_bone ? "_contact" : ""));
   }
   std::vector<ros::Publisher> of_bones;
+  of_bones.reserve(bones.size());
   for (const BodyShape& bone : bones)
     of_bones.push_back(wrenches_.emplace_back(handle_, "wrench/" + bone.name).publisher);
   {

@@ -1,7 +1,6 @@
 #include "ros/wrinkle_topic.hpp"
 
 #include "frontalis/ros/conversions.hpp"
-#include "frontalis/solver/surface_normals.hpp"
 
 #include <boost/make_shared.hpp>
 
@@ -100,9 +99,8 @@ SkinWrinklesPtr WrinkleTopic::measured(const Wanted& wanted)
   Face& face = *wanted.face;
   if (!face.meter)
   {
-    SkinState rest = rest_in_face(*face.model);
-    surface_normals(face.model->skin.triangles, rest.vertices, rest.normals);
-    face.meter = std::make_unique<WrinkleMeter>(rest, face.model->skin.triangles, face.settings, go_on);
+    const SkinTriangles& triangles = face.model->skin.triangles;
+    face.meter = std::make_unique<WrinkleMeter>(rest_in_face(*face.model), triangles, face.settings, go_on);
   }
   // A face that stands still repeats its frame.
   auto message = boost::make_shared<SkinWrinkles>();

@@ -4,10 +4,12 @@
 #include "frontalis/physics/number.hpp"
 #include "frontalis/runner/named_controls.hpp"
 #include "frontalis/solver/rigid_motion.hpp"
+#include "frontalis/solver/surface_normals.hpp"
 #include "runner/bone_forces.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 namespace frontalis
@@ -83,6 +85,17 @@ std::vector<BodyFrame> bones_in_face_frame(Solver& solver, const Model& model, b
   for (std::size_t b = 0; b < sums.size(); ++b)
     out.push_back(in_face_frame(model, sums[b], solver.controls().bone[b]));
   return out;
+}
+
+SkinState rest_in_face(const Model& model)
+{
+  SkinState skin;
+  std::transform(model.skin.vertices.begin(), model.skin.vertices.end(), std::back_inserter(skin.vertices), rounded);
+  std::transform(model.landmark_positions.begin(), model.landmark_positions.end(), std::back_inserter(skin.landmarks),
+                 rounded);
+  to_face_frame(model, skin);
+  surface_normals(model.skin.triangles, skin.vertices, skin.normals);
+  return skin;
 }
 
 bool is_finite(const SkinState& skin)

@@ -70,7 +70,7 @@ protected:
     plan.standard.profile.voxel.fill(2e-3);
     plan.edges = { 4e-3, 2e-3, 1e-3, 0.5e-3 };
     plan.knobs = { "voxel", "hourglass" };
-    plan.history = { { 0.5F }, 0.1, 0.1 };
+    plan.history = { { 0.5F }, {}, 0.1, 0.1 };
     plan.quick = true;
     plan.threads = 1;
     maker.content = [](const AccuracySetting& s)
@@ -373,12 +373,14 @@ TEST(AccuracyProfileText, is_what_a_scene_file_has)
   row.setting.profile.time_step = "assembled";
   row.setting.profile.mass_scaling.kind = MassScaling::Kind::selective;
   row.setting.profile.mass_scaling.time_step = 20e-6;
+  row.setting.profile.gaps = "parted";
+  row.setting.profile.fibres = "spread";
   row.error.rms = 0.12e-3;
   row.cost = 0.8;
   EXPECT_EQ(
       profile_text(row, "chosen", "a bench"),
-      "chosen: {voxel: 2 mm, time_step: assembled, mass_scaling: {time_step: 20 us}, measured: {error: 0.12 mm, cost: "
-      "0.8, machine: \"a bench\"}}");
+      "chosen: {voxel: 2 mm, time_step: assembled, gaps: parted, fibres: spread, mass_scaling: {time_step: 20 us}, "
+      "measured: {error: 0.12 mm, cost: 0.8, machine: \"a bench\"}}");
 }
 
 }  // namespace

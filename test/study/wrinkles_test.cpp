@@ -112,6 +112,38 @@ TEST(Wrinkles, count_one_furrow_and_its_length)
   EXPECT_NEAR(found.count, 1, 1e-9);
 }
 
+// A second sheet 4 mm behind, which faces the other way, as the lining of lips does.
+Sheet lined(Sheet sheet, const Sheet& lining)
+{
+  const auto first = static_cast<std::int32_t>(sheet.skin.vertices.size());
+  for (std::size_t v = 0; v < lining.skin.vertices.size(); ++v)
+  {
+    auto p = lining.skin.vertices[v], n = lining.skin.normals[v];
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+      p[axis] -= 4e-3F * n[axis];
+      n[axis] = -n[axis];
+    }
+    sheet.skin.vertices.push_back(p);
+    sheet.skin.normals.push_back(n);
+  }
+  for (const auto& t : lining.triangles)
+    sheet.triangles.push_back({ { first + t[0], first + t[2], first + t[1] } });
+  return sheet;
+}
+
+TEST(Wrinkles, are_those_of_the_outer_skin)
+{
+  const auto wave = [](double, double z) { return 0.5e-3 * std::cos(2 * pi * z / 12e-3); };
+  const Sheet flat = sheet(0.8e-3, [](double, double) { return 0; }), waved = sheet(0.8e-3, wave);
+  const Wrinkles alone = WrinkleMeter(flat.skin, flat.triangles).measure(waved.skin);
+  const Sheet rest = lined(flat, flat), now = lined(waved, flat);
+  const Wrinkles found = WrinkleMeter(rest.skin, rest.triangles).measure(now.skin);
+  EXPECT_EQ(found.furrows.size(), alone.furrows.size());
+  EXPECT_NEAR(found.deepest, alone.deepest, 0.1 * alone.deepest);
+  EXPECT_NEAR(found.spacing, alone.spacing, 0.1 * alone.spacing);
+}
+
 TEST(Wrinkles, leave_out_what_is_there_at_rest)
 {
   const auto wave = [](double, double z) { return 1e-3 * std::cos(2 * pi * z / 10e-3); };

@@ -38,6 +38,10 @@ struct TouchedBody
 /// All rigid bodies of the model, in the order of Solver::reactions().
 std::vector<TouchedBody> touched_bodies(const Model& model);
 
+/// Numbers of restricted nodes, of all or of those of one constraint: "rigid 3, sliding 5, attached 7"; attached ones
+/// only if there are any.
+std::string restricted_nodes_text(const Model& model, std::int32_t constraint = -1);
+
 /// For each node, the index of a bone that may move it; -1: none.
 std::vector<std::int32_t> moving_bones(const Model& model);
 

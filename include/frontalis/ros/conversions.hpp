@@ -18,9 +18,6 @@
 namespace frontalis
 {
 
-/// The skin's vertices and landmarks at rest, in the face frame [m]; without normals.
-SkinState rest_in_face(const Model& model);
-
 /// Whether the skin has as many vertices, normals and landmarks as the model, all of them finite.
 bool is_publishable(const SkinState& skin, const Model& model);
 

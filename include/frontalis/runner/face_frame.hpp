@@ -8,6 +8,9 @@ namespace frontalis
 /// Transforms vertices [m], normals and landmarks [m] from the model's local frame to the face frame.
 void to_face_frame(const Model& model, SkinState& skin);
 
+/// The skin's vertices [m], normals and landmarks [m] at rest, in the face frame, without fine lines.
+SkinState rest_in_face(const Model& model);
+
 /// Whether all coordinates of vertices, normals and landmarks are finite.
 bool is_finite(const SkinState& skin);
 

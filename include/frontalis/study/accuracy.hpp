@@ -25,7 +25,8 @@ struct AccuracySetting
 /// Activations that grow linearly from 0 during `ramp` and stay constant during `hold` [s, before time scaling].
 struct ActivationHistory
 {
-  std::vector<float> activation;  ///< value of each muscle after the ramp, 0..1
+  std::vector<float> activation;     ///< value of each muscle after the ramp, 0..1
+  std::vector<RigidTransform> bone;  ///< motion of each bone after the ramp, as in Controls; empty: bones rest
   double ramp = 0.3, hold = 0.3;
 };
 

@@ -186,7 +186,8 @@ NurbsVolume fit_nurbs(const MuscleGrid& grid, const FibreCoordinates& coordinate
   return NurbsVolume({ { along, around, SplineAxis(1, 2, false) } }, points);
 }
 
-TriangleMesh outer_surface(const NurbsVolume& volume)
+// Closed mesh of the volume's outer surface, with caps at its ends unless it is a ring.
+static TriangleMesh outer_surface(const NurbsVolume& volume)
 {
   const bool ring = volume.axes()[0].closed();
   constexpr std::int32_t along = 48, around = 36;

@@ -12,9 +12,6 @@ namespace frontalis
 /// more weight. The inner surface (w = 0) is a sheet midway between the two sides of the muscle.
 NurbsVolume fit_nurbs(const MuscleGrid& grid, const FibreCoordinates& coordinates, bool ring);
 
-/// Closed mesh of the volume's outer surface, with caps at its ends unless it is a ring.
-TriangleMesh outer_surface(const NurbsVolume& volume);
-
 struct NurbsFit
 {
   double volume = 0;    ///< volume enclosed by the outer surface [m3]

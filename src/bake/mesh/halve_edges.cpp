@@ -25,18 +25,9 @@ class Halving
   using Edge = std::pair<double, std::uint64_t>;  // squared length and key
 
 public:
-  Halving(TriangleMesh& mesh, const std::function<double(const Vector3d&)>& longest) : mesh_(mesh), longest_(longest)
+  Halving(TriangleMesh& mesh, const std::function<double(const Vector3d&)>& longest)
+      : mesh_(mesh), longest_(longest), normals_(vertex_normals(mesh))
   {
-    std::vector<Vector3d> normals(mesh.vertices.size(), Vector3d::Zero());
-    for (const Triangle& t : mesh.triangles)
-    {
-      const auto [a, b, c] = corners(mesh, t);
-      for (const std::int32_t v : t)
-        normals[v] += (b - a).cross(c - a);
-    }
-    normals_.reserve(normals.size());
-    for (const Vector3d& normal : normals)
-      normals_.push_back(normal.normalized());
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
       for (std::size_t c = 0; c < 3; ++c)
         triangles_of_[key_of(mesh.triangles[t][c], mesh.triangles[t][(c + 1) % 3])].push_back(t);
@@ -157,6 +148,46 @@ std::vector<std::array<std::int32_t, 2>> halve_edges(TriangleMesh& mesh,
                                                      const std::function<double(const Vector3d&)>& longest)
 {
   return Halving(mesh, longest).run();
+}
+
+TriangleMesh refined(const TriangleMesh& surface, const Box& box, double longest)
+{
+  TriangleMesh mesh;
+  mesh.vertices = surface.vertices;
+  std::vector<Triangle> left;
+  const auto keep = [&](const Triangle& t)
+  {
+    const auto [a, b, c] = corners(mesh, t);
+    if (Box(a).extend(b).extend(c).intersects(box))
+      left.push_back(t);
+  };
+  for (const Triangle& t : surface.triangles)
+    keep(t);
+  while (!left.empty())
+  {
+    const Triangle t = left.back();
+    left.pop_back();
+    double length = 0;
+    int edge = 0;
+    for (int e = 0; e < 3; ++e)
+      if (const double now = (vertex(mesh, t[(e + 1) % 3]) - vertex(mesh, t[e])).norm(); now > length)
+      {
+        length = now;
+        edge = e;
+      }
+    if (length <= longest)
+    {
+      mesh.triangles.push_back(t);
+      continue;
+    }
+    const std::int32_t from = t[edge], to = t[(edge + 1) % 3], opposite = t[(edge + 2) % 3];
+    const auto middle = static_cast<std::int32_t>(mesh.vertices.size());
+    mesh.vertices.push_back(to_array(0.5 * (vertex(mesh, from) + vertex(mesh, to))));
+    keep({ from, middle, opposite });
+    keep({ middle, to, opposite });
+  }
+  join_vertices(mesh);
+  return mesh;
 }
 
 }  // namespace frontalis

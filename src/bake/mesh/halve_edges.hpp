@@ -12,4 +12,8 @@ namespace frontalis
 std::vector<std::array<std::int32_t, 2>> halve_edges(TriangleMesh& mesh,
                                                      const std::function<double(const Vector3d&)>& longest);
 
+/// The part of a surface in a box. Because only vertices touch bodies and carry loads, triangles are halved until no
+/// edge is longer than `longest` [m]. Both triangles at an edge are halved at the same point.
+TriangleMesh refined(const TriangleMesh& surface, const Box& box, double longest);
+
 }  // namespace frontalis

@@ -1,8 +1,8 @@
 #include "bake/shapes/head/head.hpp"
-#include "bake/voxels/contact_bodies.hpp"
 #include "bake/voxels/model_stages.hpp"
 #include "bake/voxels/voxel_index.hpp"
 
+#include "bake/mesh/halve_edges.hpp"
 #include "bake/messages.hpp"
 
 namespace frontalis

@@ -2,6 +2,7 @@
 
 #include "bake/mesh/cluster_search.hpp"
 #include "bake/mesh/remesh.hpp"
+#include "bake/mesh/halve_edges.hpp"
 #include "bake/messages.hpp"
 #include "frontalis/model/sample_field.hpp"
 
@@ -78,46 +79,6 @@ SampledField field_of(const std::vector<Body>& bodies, const LocalFrame& frame, 
 
 }  // namespace
 
-TriangleMesh refined(const TriangleMesh& surface, const Box& box, double longest)
-{
-  TriangleMesh mesh;
-  mesh.vertices = surface.vertices;
-  std::vector<Triangle> left;
-  const auto keep = [&](const Triangle& t)
-  {
-    const auto [a, b, c] = corners(mesh, t);
-    if (Box(a).extend(b).extend(c).intersects(box))
-      left.push_back(t);
-  };
-  for (const Triangle& t : surface.triangles)
-    keep(t);
-  while (!left.empty())
-  {
-    const Triangle t = left.back();
-    left.pop_back();
-    double length = 0;
-    int edge = 0;
-    for (int e = 0; e < 3; ++e)
-      if (const double now = (vertex(mesh, t[(e + 1) % 3]) - vertex(mesh, t[e])).norm(); now > length)
-      {
-        length = now;
-        edge = e;
-      }
-    if (length <= longest)
-    {
-      mesh.triangles.push_back(t);
-      continue;
-    }
-    const std::int32_t from = t[edge], to = t[(edge + 1) % 3], opposite = t[(edge + 2) % 3];
-    const auto middle = static_cast<std::int32_t>(mesh.vertices.size());
-    mesh.vertices.push_back(to_array(0.5 * (vertex(mesh, from) + vertex(mesh, to))));
-    keep({ from, middle, opposite });
-    keep({ middle, to, opposite });
-  }
-  join_vertices(mesh);
-  return mesh;
-}
-
 namespace
 {
 void add_shape(const TriangleMesh& mesh, const LocalFrame& frame, Contact& contact)
@@ -193,18 +154,6 @@ void check_shown_crop(const Scene& scene, const SceneConstraint& constraint, con
         "{}: 'crop' shows a part of '{}' below the skin, but the skin has no crop, so that it is that whole surface: "
         "give 'skin' a 'crop', or leave out this one",
         place, scene.skin.surface);
-}
-
-// Index of a bone in the model, which is added if it is new; -1 without a name.
-std::int32_t bone_of(const std::string& name, Model& model)
-{
-  if (name.empty())
-    return -1;
-  const auto known = std::find(model.bones.begin(), model.bones.end(), name);
-  const auto bone = static_cast<std::int32_t>(known - model.bones.begin());
-  if (known == model.bones.end())
-    model.bones.push_back(name);
-  return bone;
 }
 
 // Merges the points that lie in the same eighth of a voxel into one point at their centroid, with the sum of their

@@ -10,8 +10,4 @@ namespace frontalis
 void bind_contacts(const Scene& scene, const PreparedSurfaces& surfaces, const LocalFrame& frame, Model& model,
                    BakeMonitor& monitor);
 
-/// The part of a surface in a box. Because only vertices touch bodies and carry loads, triangles are halved until no
-/// edge is longer than `longest` [m]. Both triangles at an edge are halved at the same point.
-TriangleMesh refined(const TriangleMesh& surface, const Box& box, double longest);
-
 }  // namespace frontalis

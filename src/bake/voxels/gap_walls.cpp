@@ -24,14 +24,6 @@ void each_point(const std::array<Vector3d, 3>& v, double spacing, const Call& ca
     }
 }
 
-bool in_tissue(const Volumes& volumes, const Vector3d& p)
-{
-  const auto& entries = volumes.entries();
-  return std::any_of(entries.begin(), entries.end(),
-                     [&](const Volumes::Entry& entry)
-                     { return entry.volume->tissue && membership(volumes, entry, p) == Membership::inside; });
-}
-
 }  // namespace
 
 GapWalls::GapWalls(const Volumes& volumes, const PreparedSurfaces& surfaces, const Vector3d& spacing)

@@ -1,5 +1,5 @@
 #include "frontalis/error.hpp"
-#include "bake/size_text.hpp"
+#include "bake/messages.hpp"
 #include "bake/voxels/voxelise.hpp"
 
 #include <fstream>
@@ -22,12 +22,7 @@ double estimated_voxels(const Volumes& volumes, const Box& box, double cells)
 {
   int inside = 0;
   for (int i = 0; i < samples; ++i)
-  {
-    const Vector3d p = spread_point(box, i);
-    const auto holds = [&](const Volumes::Entry& entry)
-    { return entry.volume->tissue && membership(volumes, entry, p) == Membership::inside; };
-    inside += std::any_of(volumes.entries().begin(), volumes.entries().end(), holds) ? 1 : 0;
-  }
+    inside += in_tissue(volumes, spread_point(box, i)) ? 1 : 0;
   return std::max(1.0, static_cast<double>(inside)) / samples * cells;
 }
 

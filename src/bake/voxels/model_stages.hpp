@@ -94,6 +94,9 @@ void weaken_muscles(const Scene& scene, const LocalFrame& frame, Model& model, B
 void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const std::vector<MuscleFibres>& fibres,
                     const LocalFrame& frame, Model& model, BakeMonitor& monitor);
 
+/// Index of a bone in the model, which is added if it is new; -1 without a name.
+std::int32_t bone_of(const std::string& name, Model& model);
+
 /// Nodes at an end of a muscle.
 struct MuscleEndNodes
 {

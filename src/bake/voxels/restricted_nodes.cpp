@@ -107,18 +107,6 @@ private:
   std::map<const PreparedSurface*, std::unique_ptr<PreparedSurface>> sheet_;
 };
 
-/// Index in the model of the bone of a constraint, which is added if it is new; -1 without a bone.
-std::int32_t bone_of(const SceneConstraint& constraint, Model& model)
-{
-  if (constraint.bone.empty())
-    return -1;
-  const auto known = std::find(model.bones.begin(), model.bones.end(), constraint.bone);
-  const auto bone = static_cast<std::int32_t>(known - model.bones.begin());
-  if (known == model.bones.end())
-    model.bones.push_back(constraint.bone);
-  return bone;
-}
-
 /// Whether only one constraint holds ends of a muscle. With two, each may hold one end.
 bool named_once(const Scene& scene, const std::string& muscle)
 {
@@ -128,6 +116,17 @@ bool named_once(const Scene& scene, const std::string& muscle)
 }
 
 }  // namespace
+
+std::int32_t bone_of(const std::string& name, Model& model)
+{
+  if (name.empty())
+    return -1;
+  const auto known = std::find(model.bones.begin(), model.bones.end(), name);
+  const auto bone = static_cast<std::int32_t>(known - model.bones.begin());
+  if (known == model.bones.end())
+    model.bones.push_back(name);
+  return bone;
+}
 
 void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const std::vector<MuscleFibres>& fibres,
                     const LocalFrame& frame, Model& model, BakeMonitor& monitor)
@@ -185,7 +184,7 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
     model.constraints.push_back(constraint.name);
     if (constraint.kind != SceneConstraint::Kind::rigid)
       continue;
-    const std::int32_t bone = bone_of(constraint, model);
+    const std::int32_t bone = bone_of(constraint.bone, model);
     const std::string place = place_in_scene(scene, "constraint", constraint);
     std::vector<bool> near(nodes, false);
     for_each_node(
@@ -237,7 +236,7 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
     const SceneConstraint& constraint = scene.constraints[c];
     if (constraint.kind != SceneConstraint::Kind::sliding)
       continue;
-    const std::int32_t bone = bone_of(constraint, model);
+    const std::int32_t bone = bone_of(constraint.bone, model);
     // finds or adds the field for a sheet; returns its index among the model's surfaces
     const auto index_of = [&](const PreparedSurface& sheet)
     {
@@ -286,7 +285,7 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
   for (std::size_t s = 0; s < sheets.size(); ++s)
     for (const SceneConstraint& constraint : scene.constraints)
       if (constraint.kind == SceneConstraint::Kind::rigid &&
-          bone_of(constraint, model) == model.constraint_surfaces[s].bone)
+          bone_of(constraint.bone, model) == model.constraint_surfaces[s].bone)
         for (const std::string& name : constraint.surfaces)
         {
           const PreparedSurface& first = *sheets[s].front().whole;

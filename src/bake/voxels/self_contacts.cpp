@@ -1,7 +1,7 @@
 #include "bake/voxels/self_contacts.hpp"
 
+#include "bake/mesh/halve_edges.hpp"
 #include "bake/messages.hpp"
-#include "bake/voxels/contact_bodies.hpp"
 #include "bake/voxels/voxel_index.hpp"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 #include "bake/voxels/shells.hpp"
 
 #include "bake/mesh/remesh.hpp"
+#include "bake/mesh/halve_edges.hpp"
 #include "bake/messages.hpp"
-#include "bake/voxels/contact_bodies.hpp"
 #include "frontalis/physics/hourglass.hpp"
 #include "frontalis/physics/materials/lookup.hpp"
 
@@ -25,15 +25,9 @@ constexpr double farthest = 1;
 // Moves vertices against their normals.
 void sink(TriangleMesh& mesh, double depth)
 {
-  std::vector<Vector3d> normals(mesh.vertices.size(), Vector3d(0, 0, 0));
-  for (const Triangle& t : mesh.triangles)
-  {
-    const auto [a, b, c] = corners(mesh, t);
-    for (const std::int32_t v : t)
-      normals[v] += (b - a).cross(c - a);
-  }
+  const std::vector<Vector3d> normals = vertex_normals(mesh);
   for (std::size_t v = 0; v < normals.size(); ++v)
-    mesh.vertices[v] = to_array(to_vector(mesh.vertices[v]) - depth * normals[v].normalized());
+    mesh.vertices[v] = to_array(to_vector(mesh.vertices[v]) - depth * normals[v]);
 }
 
 // The mesh without the triangles that slits cut: a shell does not hold a cut closed.

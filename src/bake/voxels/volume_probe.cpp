@@ -107,6 +107,14 @@ Membership membership(const Volumes& volumes, const Volumes::Entry& entry, const
   return hidden ? Membership::hidden : Membership::inside;
 }
 
+bool in_tissue(const Volumes& volumes, const Vector3d& p)
+{
+  const auto& entries = volumes.entries();
+  return std::any_of(entries.begin(), entries.end(),
+                     [&](const Volumes::Entry& entry)
+                     { return entry.volume->tissue && membership(volumes, entry, p) == Membership::inside; });
+}
+
 void check_openings(const Scene& scene, const Volumes& volumes)
 {
   for (const Volumes::Entry& entry : volumes.entries())

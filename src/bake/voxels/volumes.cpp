@@ -1,6 +1,6 @@
 #include "bake/voxels/volumes.hpp"
 
-#include "bake/size_text.hpp"
+#include "bake/messages.hpp"
 
 namespace frontalis
 {

@@ -105,6 +105,8 @@ enum class Membership
 
 /// Membership of a single point. Slow, but independent of the optimised sampling of voxels, so that it can check that.
 Membership membership(const Volumes& volumes, const Volumes::Entry& entry, const Vector3d& p);
+/// Whether a point lies in a volume that is tissue.
+bool in_tissue(const Volumes& volumes, const Vector3d& p);
 
 /// Throws Error if the holes of a volume's surface do harm: for more than a tenth of the points inside, the winding
 /// number is below 3/4, because a hole is near. The error has the length and position of the hole in front of which

@@ -44,6 +44,11 @@ void weaken_muscles(const Scene& scene, const LocalFrame& frame, Model& model, B
   std::map<std::int32_t, std::int32_t> passive_part;
   std::vector<double> whole(model.muscles.size(), 0), left(model.muscles.size(), 0);
   std::vector<bool> weakens(scene.weakness.size(), false);
+  const auto is_of = [](const SceneWeakness& weakness, const std::string& name)
+  {
+    const auto& names = weakness.muscles;
+    return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
+  };
   for (std::size_t e = 0; e < model.voxels.size(); ++e)
   {
     const Vector3 place = to_array(frame.voxel_centre(model, e));
@@ -54,8 +59,7 @@ void weaken_muscles(const Scene& scene, const LocalFrame& frame, Model& model, B
       for (std::size_t w = 0; w < scene.weakness.size(); ++w)
       {
         const SceneWeakness& weakness = scene.weakness[w];
-        if (!weakness.muscles.empty() &&
-            std::find(weakness.muscles.begin(), weakness.muscles.end(), of.name) == weakness.muscles.end())
+        if (!is_of(weakness, of.name))
           continue;
         const double share = share_kept(weakness, place);
         kept *= share;
@@ -81,8 +85,11 @@ void weaken_muscles(const Scene& scene, const LocalFrame& frame, Model& model, B
   for (std::size_t w = 0; w < weakens.size(); ++w)
   {
     const SceneWeakness& weakness = scene.weakness[w];
-    const bool has_fibres = !scene.switched_off.has(Effect::contraction);
-    if (has_fibres && weakness.radius > 0 && weakness.keeps < 1 && !weakens[w])
+    // Muscles whose effect is switched off have no fibres.
+    bool lacks_fibres = false;
+    for (std::size_t m = 0; m < whole.size(); ++m)
+      lacks_fibres = lacks_fibres || (whole[m] == 0 && is_of(weakness, model.muscles[m].name));
+    if (!lacks_fibres && weakness.radius > 0 && weakness.keeps < 1 && !weakens[w])
       throw failure("{}: weakness: no voxel of {} lies within {} of {}; check its place and radius", scene.file,
                     weakness.muscles.empty() ? "a muscle" : fmt::format("{}", fmt::join(weakness.muscles, ", ")),
                     length_text(weakness.radius, scene.unit), place_text(to_vector(weakness.centre), scene.unit));

@@ -5,7 +5,7 @@
 #include "frontalis/study/step_time.hpp"
 #include "frontalis/study/table.hpp"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -102,6 +102,8 @@ std::string VariantBench::key_of(const AccuracySetting& setting, const Backend& 
   std::string text = "frontalis " FRONTALIS_VERSION "\n" + maker_.content(setting) + backend;
   for (const float activation : plan_.history.activation)
     text += fmt::format(" {:.6f}", activation);
+  for (const RigidTransform& bone : plan_.history.bone)
+    text += fmt::format(" {:.6g} {:.6g}", fmt::join(bone.rotation, " "), fmt::join(bone.translation, " "));
   return plan_.folder + "/variants/" +
          content_hash(fmt::format("{} {:.6f} {:.6f}", text, plan_.history.ramp, plan_.history.hold));
 }
@@ -210,6 +212,8 @@ std::size_t VariantBench::measure(const AccuracySetting& setting, const std::str
       try
       {
         cost = time_variant(model, setting, plan_.history, plan_.threads, plan_.quick ? 0.3 : 1);
+        // The solver of another setting describes itself in other words.
+        cost->machine = machine_.at(setting.backend);
         cost->memory += bytes;
         cost->build = build;
         keep(key, *cost);

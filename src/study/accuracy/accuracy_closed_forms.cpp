@@ -80,7 +80,7 @@ ClosedForm closed_form(const std::string& name, std::vector<double> edges,
   plan.standard.profile.voxel.fill(plan.edges[1]);
   plan.standard.profile.precision = "double";
   plan.knobs = { "voxel", "hourglass", "integration", "precision", "share", "time_step" };
-  plan.history = { {}, bar_ramp, bar_hold };
+  plan.history = { {}, {}, bar_ramp, bar_hold };
   form.maker.bake = make;
   form.maker.content = [name](const AccuracySetting& setting)
   {

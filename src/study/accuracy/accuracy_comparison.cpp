@@ -132,14 +132,19 @@ void note_orders(const AccuracyPlan& plan, const VariantBench& bench, AccuracyFi
   }
 }
 
+// Whether a row was measured and can be a scene's profile.
+static bool is_choice(const AccuracyRow& row, const Backend& backend)
+{
+  return row.fault.empty() && row.setting.time_scaling == 1 && row.setting.backend == backend && row.cost > 0 &&
+         row.error.rms >= 0;
+}
+
 std::vector<std::size_t> pareto_front(const std::vector<AccuracyRow>& rows, const AccuracySetting& standard,
                                       double floor)
 {
-  const auto is_profile = [&](const AccuracySetting& s)
-  { return s.time_scaling == 1 && s.backend == standard.backend; };
   std::vector<std::size_t> order;
   for (std::size_t r = 0; r < rows.size(); ++r)
-    if (rows[r].fault.empty() && is_profile(rows[r].setting) && rows[r].cost > 0 && rows[r].error.rms >= 0)
+    if (is_choice(rows[r], standard.backend))
       order.push_back(r);
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return rows[a].cost < rows[b].cost; });
@@ -158,9 +163,14 @@ const AccuracyRow& cheapest_within(const AccuracyFindings& findings, double tole
         fmt::format("a tolerance of {} is below the error of the reference itself, {}: nothing is claimed below it; "
                     "take a finer reference",
                     millimetres(tolerance), millimetres(findings.reference_error)));
-  for (const std::size_t r : findings.front)
-    if (findings.rows[r].error.rms <= tolerance)
-      return findings.rows[r];
+  // A costlier setting comes to the front only if it is much more accurate, so that cheaper ones may not be there.
+  const AccuracyRow* cheapest = nullptr;
+  for (const AccuracyRow& row : findings.rows)
+    if (is_choice(row, best.setting.backend) && row.error.rms <= tolerance &&
+        (cheapest == nullptr || row.cost < cheapest->cost))
+      cheapest = &row;
+  if (cheapest != nullptr)
+    return *cheapest;
   throw Error(
       fmt::format("no setting that was measured has an error of at most {}; the most accurate, {}, has {} at "
                   "{:.3g} s per simulated second",

@@ -179,6 +179,8 @@ std::string profile_text(const AccuracyRow& row, const std::string& name, const 
   add(p.time_step_share != defaults.time_step_share, "time_step_share: " + readable(p.time_step_share));
   add(p.time_step != defaults.time_step, "time_step: " + p.time_step);
   add(p.boundary != defaults.boundary, "boundary: " + p.boundary);
+  add(p.gaps != defaults.gaps, "gaps: " + p.gaps);
+  add(p.fibres != defaults.fibres, "fibres: " + p.fibres);
   add(p.assumed_strain, "hourglass: assumed_strain");
   add(p.integration != defaults.integration, "integration: " + p.integration);
   add(p.precision != defaults.precision, "precision: " + p.precision);

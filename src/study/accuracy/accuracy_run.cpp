@@ -5,6 +5,7 @@
 #include "frontalis/error.hpp"
 #include "frontalis/runner/face_frame.hpp"
 #include "frontalis/solver/guard.hpp"
+#include "frontalis/solver/rigid_motion.hpp"
 #include "frontalis/study/step_time.hpp"
 
 #include <algorithm>
@@ -36,6 +37,8 @@ Controls controls_at(const Solver& solver, const ActivationHistory& history, dou
   const auto share = static_cast<float>(history.ramp > 0 ? std::min(time / history.ramp, 1.0) : 1);
   for (float& a : controls.activation)
     a *= share;
+  for (std::size_t bone = 0; bone < history.bone.size(); ++bone)
+    controls.bone[bone] = interpolate(RigidTransform(), history.bone[bone], double(share));
   return controls;
 }
 
@@ -209,6 +212,8 @@ VariantCost time_variant(const std::shared_ptr<const Model>& model, const Accura
   cost.machine = machine_of(*solver, threads);
   Controls controls = solver->controls();
   controls.activation = history.activation;
+  if (!history.bone.empty())
+    controls.bone = history.bone;
   // Processor time excludes the time of other programs, but is meaningful only for a single thread.
   const bool alone = works_alone(settings);
   const double used = processor_seconds(), begin = wall_seconds();

@@ -76,6 +76,11 @@ void Study::choose_reference()
           fmt::format("Voxels of {}{} were left out: they would take about {:.2g} s, too much of the budget.",
                       millimetres(edges[level]), level + 1 < edges.size() ? " and less" : "", takes));
       edges.resize(level);
+      if (!plan_.exact && is_too_fine(plan_.standard, plan_))
+        throw Error(
+            fmt::format("a budget of {:.4g} s is too small for a comparison: the reference must have smaller voxels "
+                        "than the standard setting, and {} alone would take about {:.2g} s here; allow more",
+                        plan_.budget, millimetres(levels[level].profile.voxel[0]), takes));
       break;
     }
     if (share > 0.8)

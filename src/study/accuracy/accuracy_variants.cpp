@@ -89,8 +89,8 @@ std::vector<Sweep> knob_sweeps(const AccuracyPlan& plan, double critical)
   const Numbers edges(plan.edges.begin(), plan.edges.end() - (plan.exact || plan.edges.empty() ? 0 : 1));
   // The GPU always computes in single precision.
   const Names precisions = s.backend == "cuda" ? Names{} : Names{ "single", "compensated", "double" };
-  // Bodies with a closed form have no bones, and the GPU does not attach nodes at the surface of bones.
-  const Numbers attached_edges = plan.exact || s.backend == "cuda" ? Numbers{} : edges;
+  // Bodies with a closed form have no bones.
+  const Numbers attached_edges = plan.exact ? Numbers{} : edges;
   std::vector<Backend> backends = available_backends();
   if (quick)
     backends.erase(std::remove(backends.begin(), backends.end(), "reference"), backends.end());
@@ -192,6 +192,8 @@ std::string name_of(const AccuracySetting& setting, const AccuracySetting& stand
   add(p.precision != s.precision, p.precision);
   add(p.time_step != s.time_step, p.time_step);
   add(p.boundary != s.boundary, "boundary " + p.boundary);
+  add(p.gaps != s.gaps, "gaps " + p.gaps);
+  add(p.fibres != s.fibres, "fibres " + p.fibres);
   add(p.time_step_share != s.time_step_share, readable(p.time_step_share, 3) + " of the step");
   add(!same(p.mass_scaling, s.mass_scaling), text_of(p.mass_scaling));
   add(p.bulk_modulus_max != s.bulk_modulus_max,

@@ -29,7 +29,6 @@ public:
   double cost(const Eigen::VectorXd& values, const Eigen::VectorXd& displacements) const;
   Eigen::MatrixXd covariance(const Eigen::VectorXd& values) const;
 
-  const Eigen::VectorXd& targets() const { return targets_; }
   const Eigen::VectorXd& rest_values() const { return law_.rest_values(); }
 
 private:

@@ -52,7 +52,7 @@ std::string csv_cell(const Table::Cell& cell)
 
 double Check::error() const { return std::abs(found - expected) / (relative ? std::abs(expected) : 1); }
 
-std::string Check::verdict() const { return std::isnan(bound) ? "shown" : passed() ? "pass" : "FAIL"; }
+std::string Check::verdict() const { return !passed() ? "FAIL" : std::isnan(bound) ? "shown" : "pass"; }
 
 std::string Check::error_text(double value) const
 {

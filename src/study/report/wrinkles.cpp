@@ -210,8 +210,14 @@ std::map<int, std::vector<SectionPoint>> sections_of(const SkinState& rest, cons
                                                      const Vector& across, const WrinkleSettings& settings)
 {
   std::map<int, std::vector<SectionPoint>> sections;
+  // Skin that faces away lies behind the skin that is measured, as the lining of the lips does: its points would come
+  // between those of the other.
+  const Vector outwards = across.cross(direction);
+  const auto faces_away = [&](std::size_t v) { return to_eigen(rest.normals[v]).dot(outwards) < -0.3; };
   const auto cross_edge = [&](std::size_t v, std::size_t w)
   {
+    if (faces_away(v) && faces_away(w))
+      return;
     const double from = to_eigen(now.vertices[v]).dot(direction) / settings.section_distance;
     const double to = to_eigen(now.vertices[w]).dot(direction) / settings.section_distance;
     for (int k = static_cast<int>(std::ceil(std::min(from, to))); k < std::max(from, to); ++k)

@@ -1,6 +1,7 @@
 // Contact with rigid bodies: blocks that are pressed, bounce, slip and slide, on every backend.
 
 #include "frontalis/physics/contact.hpp"
+#include "frontalis/physics/time_step.hpp"
 #include "frontalis/study/contact_model.hpp"
 #include "study/verification/contact_checks.hpp"
 
@@ -91,9 +92,9 @@ void verify_contact_impact(const Backend&, Finding& finding)
       solver->advance(0.1e-3, solver->controls());
       const EnergyLedger l = solver->ledger();
       const double all = l["kinetic"] + l["internal"] + l["hourglass"] + l["contact_stored"], ms = 1e3 * solver->time();
-      stored = std::max(stored, l["contact_stored"]);
-      worst = std::max(worst, relative(all, initial));
-      unexplained = std::max(unexplained, 100 * std::abs(l.imbalance()) / initial);
+      stored = physics::larger_or_none(stored, l["contact_stored"]);
+      worst = physics::larger_or_none(worst, relative(all, initial));
+      unexplained = physics::larger_or_none(unexplained, 100 * std::abs(l.imbalance()) / initial);
       plot.curves[0].add(ms, l["kinetic"] / initial);
       plot.curves[1].add(ms, (l["internal"] + l["hourglass"]) / initial);
       plot.curves[2].add(ms, l["contact_stored"] / initial);
@@ -102,10 +103,10 @@ void verify_contact_impact(const Backend&, Finding& finding)
     finding.checks.absolute("change of mechanical energy, " + backend, "%", 0, worst, 2);
     finding.checks.absolute("energy unexplained, " + backend, "%", 0, unexplained, 2);
     finding.checks.absolute("shortfall from 1 % stored by contact, " + backend, "%", 0,
-                            std::max(0.0, 1 - 100 * stored / initial), 0);
+                            physics::larger_or_none(0.0, 1 - 100 * stored / initial), 0);
     finding.checks.absolute("force after the bounce, " + backend, "N", 0, solver->reactions()[0].force[2], 0);
     finding.checks.absolute("shortfall from a rise of 0.05 mm, " + backend, "mm", 0,
-                            std::max(0.0, 0.05 - 1e3 * mean(displacements(*solver), 2)), 0);
+                            physics::larger_or_none(0.0, 0.05 - 1e3 * mean(displacements(*solver), 2)), 0);
     if (backend == "cpu")
       finding.plots.emplace_back("contact_impact", plot);
   };

@@ -1,6 +1,7 @@
 // Forces of elements and stresses of laws, which must be exact except for rounding, and contraction of free bars.
 
 #include "frontalis/physics/materials/lookup.hpp"
+#include "frontalis/physics/time_step.hpp"
 #include "study/verification/verification_cases.hpp"
 
 #include <algorithm>
@@ -28,7 +29,7 @@ double largest(const Vectors& vectors)
   double value = 0;
   for (const auto& v : vectors)
     for (const double c : v)
-      value = std::max(value, std::abs(c));
+      value = physics::larger_or_none(value, std::abs(c));
   return value;
 }
 
@@ -126,12 +127,12 @@ void verify_affine_motion(const Backend& other, Finding& finding)
     for (std::size_t n = 0; n < forces.size(); ++n)
       if (const auto [least, most] = std::minmax_element(model.nodes[n].begin(), model.nodes[n].end());
           *least > 0 && *most < 4)
-        inside = std::max(inside, largest({ forces[n] }));
+        inside = physics::larger_or_none(inside, largest({ forces[n] }));
     const Gradient P = piola_stress(model, *solver);
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j)
-        error = std::max(error,
-                         std::abs(P[3 * i + j] - law.on_gradient * k.F.a[i][j] - law.on_cofactor * k.cofactor.a[i][j]));
+        error = physics::larger_or_none(
+            error, std::abs(P[3 * i + j] - law.on_gradient * k.F.a[i][j] - law.on_cofactor * k.cofactor.a[i][j]));
     finding.checks.absolute("force inside over E h², " + backend, "1", 0,
                             inside / (voxel_young * voxel_edge * voxel_edge), bound);
     finding.checks.absolute("error of stress over E, " + backend, "1", 0, error / voxel_young, bound);

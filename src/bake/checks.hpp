@@ -1,6 +1,7 @@
 #pragma once
 
-#include "bake/mesh/surface.hpp"
+#include "bake/bake_monitor.hpp"
+#include "bake/voxels/volumes.hpp"
 
 #include <algorithm>
 #include <map>
@@ -9,6 +10,8 @@
 
 namespace frontalis
 {
+
+// Checks of a scene for mistakes that the bake would follow without a word.
 
 /// The thing called NAME_right if `name` is NAME_left, and things.end() for any other name or without such a thing.
 template <class Thing>
@@ -33,5 +36,17 @@ std::optional<MiddlePlane> middle_plane(const PreparedSurfaces& surfaces);
 /// that is mirrored, by its files or by its frame, would otherwise be baked without a word. Warns if left and right do
 /// not lie beside each other in the face frame, or on one side of it, and of files with the same mesh.
 void check_sides(const Scene& scene, const PreparedSurfaces& surfaces, BakeMonitor& monitor);
+
+/// Warns of holes in mesh files, within the tissue, that are probably faults: in surfaces that tissue is outside of,
+/// such as bones, and in the skin on one side of the face alone. Holes of eyes and mouth have a counterpart on the
+/// other side or lie in the middle. Sides are those of the pairs of surfaces NAME_left and NAME_right.
+void check_holes(const Scene& scene, const PreparedSurfaces& surfaces, const Volumes& volumes, BakeMonitor& monitor);
+
+/// Warns of materials, muscles, layers and gravity that are so far from any tissue, bone or silicone that a unit is
+/// probably missing or wrong: a number without a unit is in SI units, so that 'young: 34' is 34 Pa.
+void check_magnitudes(const Scene& scene, const Model& model, BakeMonitor& monitor);
+
+/// Warns of bones that expressions, action units or the demo turn although the scene gives no centre for them.
+void check_bone_centres(const Scene& scene, BakeMonitor& monitor);
 
 }  // namespace frontalis
