@@ -191,6 +191,11 @@ void FaceInputs::on_joint_trajectory(const trajectory_msgs::JointTrajectory& mes
 
 void FaceInputs::take_pose(const char* topic, Runner& running, double now, const Controls& pose, const Timing& timing)
 {
+  std::set<std::string> posed = bones_of_poses(*model_);
+  for (const BoneFrame& followed : parameters_.bone_frames)
+    posed.erase(followed.bone);
+  if (model_->muscles.empty() && posed.empty())
+    throw Error("the face has no muscles, and the bones of its expressions follow frames (~bone_frames)");
   const double reached = now + timing.onset, left = reached + timing.hold, over = left + timing.release;
   const auto before = present(now);
   const Controls rest = rest_controls(*model_);
@@ -210,9 +215,7 @@ void FaceInputs::take_pose(const char* topic, Runner& running, double now, const
   }
   command(topic, running, now, courses, now, bones.time.back());
   bones_ = std::move(bones);
-  posed_ = bones_of_poses(*model_);
-  for (const BoneFrame& followed : parameters_.bone_frames)
-    posed_.erase(followed.bone);
+  posed_ = std::move(posed);
   set_bones(running, now);
 }
 

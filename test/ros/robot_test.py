@@ -111,6 +111,10 @@ class Robot(unittest.TestCase):
         self.wait_for_effort("jaw_open", torque)
         self.assertGreater(self.joints["jaw_open"][1], 0.001)  # the skin closes the jaw
 
+    def test_an_expression_that_could_move_nothing_is_refused(self):
+        self.face.express("smile")
+        wait(lambda: "follow frames" in (self.face.diagnostic("latest refusal on ~expression") or ""), "a refusal")
+
     def test_the_first_step_after_a_subscription_has_forces(self):
         forces = []
         topic = rospy.Subscriber("/face/wrench/anchor_upper_lip", WrenchStamped, forces.append)
