@@ -199,8 +199,9 @@ void write_outputs(const AccuracyFindings& findings, const AccuracyOptions& opti
              report.substr(begin, report.find("\n\n|") - begin), path);
   try
   {
+    std::error_code ignored;
     for (const char* extension : { ".png", ".svg" })
-      std::filesystem::remove(path + extension);  // without gnuplot the plot of an earlier study would stay
+      std::filesystem::remove(path + extension, ignored);  // without gnuplot the plot of an earlier study would stay
     write_plot(accuracy_plot(findings, title), path);
     fmt::print(", .png, .svg\n");
   }

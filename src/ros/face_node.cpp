@@ -180,12 +180,12 @@ void FaceNode::replace_face(const FaceParameters& parameters)
     load_fault_.clear();
     before = std::exchange(runner_, made);
   }
+  // A reset publishes the face at rest, also in lock-step. It comes first, because it forgets commands.
+  inputs_.reset(*made);
   if (before)
     before->cancel_step();
   before.reset();
   paused_ = made->paused();
-  // a reset publishes the face at rest, also in lock-step
-  inputs_.reset(*made);
   {
     // the new runner has all effects switched on
     const boost::recursive_mutex::scoped_lock lock(server_mutex_);

@@ -242,8 +242,16 @@ bool FacePublisher::publish(const Frame& frame, const ros::Time& stamp, bool pau
       marker.header.frame_id = face_frame_;
       marker.header.stamp = stamp;
     }
+    // The muscles of the face before are removed for a while, because a message may be lost.
     if (std::exchange(muscles_are_new_, false))
+    {
+      const auto first = static_cast<std::ptrdiff_t>(muscles.markers.size());
       muscles = replacing(std::move(muscles), shown_muscles_);
+      removals_.assign(muscles.markers.begin() + first, muscles.markers.end());
+      removals_end_ = ros::WallTime::now() + bodies_again;
+    }
+    else if (ros::WallTime::now() < removals_end_)
+      muscles.markers.insert(muscles.markers.end(), removals_.begin(), removals_.end());
     muscles_.publish(muscles);
   }
   publish_state(frame, stamp, paused);

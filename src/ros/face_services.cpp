@@ -38,6 +38,12 @@ bool FaceNode::answer(Response& response, const Act& act)
   return true;
 }
 
+void FaceNode::note_pause()
+{
+  if (const auto present = runner())
+    paused_ = present->paused();
+}
+
 bool FaceNode::on_reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response)
 {
   return answer(response,
@@ -45,7 +51,7 @@ bool FaceNode::on_reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response
                 {
                   ++resets_;
                   inputs_.reset(running);
-                  paused_ = running.paused();
+                  note_pause();
                 });
 }
 
@@ -55,9 +61,9 @@ bool FaceNode::on_pause(std_srvs::SetBool::Request& request, std_srvs::SetBool::
                 [&](Runner& running)
                 {
                   running.pause(request.data);
-                  paused_ = running.paused();
+                  note_pause();
                   const std::lock_guard<std::mutex> lock(frame_mutex_);
-                  if (!request.data && stands())
+                  if (!request.data && parameters_.runner.pace == Pace::lock_step)
                     response.message = "~pace is lock_step: the face moves in ~step alone";
                 });
 }
@@ -73,13 +79,11 @@ bool FaceNode::on_step(Step::Request& request, Step::Response& response)
         const std::unique_lock<std::mutex> one_at_a_time(stepping_mutex_, std::try_to_lock);
         if (!one_at_a_time)
           throw Error("another step is under way");
-        // If another face has taken the place of this one, it tells whether it is paused.
-        const std::shared_ptr<void> at_the_end(nullptr,
-                                               [this](void*)
-                                               {
-                                                 if (const auto present = runner())
-                                                   paused_ = present->paused();
-                                               });
+        struct AtTheEnd
+        {
+          FaceNode& node;
+          ~AtTheEnd() { node.note_pause(); }
+        } const at_the_end{ *this };
         Frame frame;
         frame.time = time_;
         double left = request.seconds;

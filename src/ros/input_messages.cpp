@@ -109,12 +109,15 @@ void FaceInputs::end_demo(const char* topic)
 }
 
 void FaceInputs::command(const char* topic, Runner& running, double now,
-                         const std::map<std::string, MuscleCommands::Course>& courses, double begin, double end)
+                         const std::map<std::string, MuscleCommands::Course>& courses, double begin,
+                         std::optional<double> bones_end)
 {
   // The message ends the demo. Muscles that it does not name keep their activation in the demo.
   if (demo_playing_)
     commands_->set(demo_->activation(now), now);
-  commands_->follow(courses, begin, now, end);
+  // A motion of bones goes on beside later commands of muscles.
+  const double under_way = posed_.empty() ? 0 : bones_.time.back();
+  commands_->follow(courses, begin, now, bones_end.value_or(under_way));
   silent_ = false;
   end_demo(topic);
   running.set_activation(commands_->at(now));
@@ -192,9 +195,10 @@ void FaceInputs::on_joint_trajectory(const trajectory_msgs::JointTrajectory& mes
 void FaceInputs::take_pose(const char* topic, Runner& running, double now, const Controls& pose, const Timing& timing)
 {
   std::set<std::string> posed = bones_of_poses(*model_);
+  const bool moves_bones = !posed.empty();
   for (const BoneFrame& followed : parameters_.bone_frames)
     posed.erase(followed.bone);
-  if (model_->muscles.empty() && posed.empty())
+  if (model_->muscles.empty() && moves_bones && posed.empty())
     throw Error("the face has no muscles, and the bones of its expressions follow frames (~bone_frames)");
   const double reached = now + timing.onset, left = reached + timing.hold, over = left + timing.release;
   const auto before = present(now);

@@ -107,9 +107,9 @@ FaceParameters read_parameters(const ros::NodeHandle& private_handle, bool names
   out.runner.pace = reader.named("pace", "real_time", &pace_from_name);
   out.runner.frame_rate =
       reader.number("frame_rate", 0.0, "a number [1/s]; 0: the model's", 0.0, "0 (the model's) or 0.1 to 1000 [1/s]");
-  if (const double rate = out.runner.frame_rate; rate > 0 && (rate < slowest_rate || rate > fastest_rate))
+  if (const double rate = out.runner.frame_rate; rate > 0 && (rate < slowest_frame_rate || rate > fastest_frame_rate))
     reader.add_fault("frame_rate", fmt::format("found {}; allowed are 0 (the model's) or {} to {} [1/s]", rate,
-                                               slowest_rate, fastest_rate));
+                                               slowest_frame_rate, fastest_frame_rate));
   const int interval = reader.number("guard_interval", -1, "a whole number of time steps; 0: no guard", -1,
                                      "0 (no guard) or more, or -1 (the backend's choice)");
   if (interval == 0)

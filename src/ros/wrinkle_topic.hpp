@@ -60,9 +60,9 @@ private:
   std::optional<Wanted> wanted_;
   std::atomic<bool> stop_{ false };
   // used by the thread: the latest message, and the face and the skin that it is about
-  WallThrottle warning_;
   SkinWrinklesPtr latest_;
   Wanted latest_wanted_;
+  WallThrottle warning_;
   std::thread thread_;
 };
 

@@ -43,10 +43,11 @@ Runner::~Runner()
 void Runner::set_frame_rate(double rate)
 {
   const double found = rate > 0 ? rate : self_->model->frame_rate;
-  if (!(found >= slowest_rate && found <= fastest_rate))
-    throw Error(fmt::format("frame rate {} Hz: allowed is {} to {}", found, slowest_rate, fastest_rate));
+  if (!(found >= slowest_frame_rate && found <= fastest_frame_rate))
+    throw Error(fmt::format("frame rate {} Hz: allowed is {} to {}", found, slowest_frame_rate, fastest_frame_rate));
   self_->frame_rate = found;
 }
+
 double Runner::frame_rate() const { return self_->frame_rate; }
 
 void Runner::set_damping(double damping)

@@ -391,7 +391,6 @@ void Runner::Implementation::run()
       {
         reset_error = frame.failure;
         resets_done = resets_begun;
-        wake.notify_all();
       }
       wake.wait_for(lock, std::chrono::milliseconds(100), [&] { return stop || reset_wanted(); });
     }

@@ -47,11 +47,13 @@ class Fault(unittest.TestCase):
     def test_scene_with_a_fault(self):
         self.check("/bad_scene", "five_faults.yaml:")
 
-    def test_bad_parameters_are_told_all_at_once(self):
+    def test_node_without_a_scene_can_load_one(self):
         scene = os.path.join(rospkg.RosPack().get_path("frontalis"), "test/ros/small.yaml")
         self.check("/no_scene", "neither ~scene nor ~model")
         answer = rospy.ServiceProxy("/no_scene/load_scene", LoadScene)(scene=scene)
         self.assertTrue(answer.success, answer.message)
+
+    def test_bad_parameters_are_told_all_at_once(self):
         self.check("/bad_parameters", "~scene nor ~model", "pace", "'slow'", "lock_step", "threads", "backend")
 
     def test_parameters_of_the_wrong_type(self):

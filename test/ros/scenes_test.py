@@ -172,7 +172,7 @@ class Scenes(unittest.TestCase):
 
         for _ in range(3):
             # The bone must not wait for the time that the face had reached before.
-            self.assertTrue(self.face.step(20).success)
+            self.assertTrue(self.face.step(2 * LIMIT).success)
             self.assertTrue(self.face.pause(False).success)
             self.assertTrue(self.face.reset().success)
             wait(lambda: lifted(0), "the bone at rest")

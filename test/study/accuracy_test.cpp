@@ -10,6 +10,7 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <tuple>
 
 namespace frontalis
 {
@@ -364,6 +365,18 @@ TEST(AccuracyCost, is_steps_and_published_skins_of_a_simulated_second)
   variant.cost.step = 1e-4;
   variant.cost.skin = 2e-3;
   EXPECT_DOUBLE_EQ(row_of(variant, plan, {}, nullptr).cost, 0.1 + 0.05);
+}
+
+TEST(CheapestSetting, may_lie_beside_the_front)
+{
+  AccuracyFindings findings;
+  findings.rows.resize(3);
+  const std::pair<double, double> figures[] = { { 0.316e-3, 1.2 }, { 0.315e-3, 2.4 }, { 0.271e-3, 3.1 } };
+  for (std::size_t r = 0; r < 3; ++r)
+    std::tie(findings.rows[r].error.rms, findings.rows[r].cost) = figures[r];
+  findings.front = { 0, 2 };
+  EXPECT_EQ(cheapest_within(findings, 0.3155e-3).cost, 2.4);
+  EXPECT_EQ(cheapest_within(findings, 1e-3).cost, 1.2);
 }
 
 TEST(AccuracyProfileText, is_what_a_scene_file_has)

@@ -18,6 +18,7 @@ TEST(Check, PassesWithinItsBoundAlone)
   EXPECT_FALSE((Check{ "", "", -2, -2.1, 0.049 }).passed());
   EXPECT_FALSE((Check{ "", "", 0, -0.2, 0.1, false }).passed());
   EXPECT_TRUE((Check{ "", "", 0, -0.2, std::nan(""), false }).passed()) << "no bound: shown as it is";
+  EXPECT_EQ((Check{ "", "", 0, std::nan(""), std::nan(""), false }).verdict(), "FAIL") << "no figure";
   EXPECT_FALSE((Check{ "", "", 0, std::nan(""), 0.1, false }).passed());
   EXPECT_FALSE((Check{ "", "", 0, std::nan(""), std::nan(""), false }).passed());
 }

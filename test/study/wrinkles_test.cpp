@@ -112,18 +112,16 @@ TEST(Wrinkles, count_one_furrow_and_its_length)
   EXPECT_NEAR(found.count, 1, 1e-9);
 }
 
-// A second sheet 4 mm behind, which faces the other way, as the lining of lips does.
+// A second sheet of the same size 4 mm behind, which faces the other way, as the lining of lips does.
 Sheet lined(Sheet sheet, const Sheet& lining)
 {
   const auto first = static_cast<std::int32_t>(sheet.skin.vertices.size());
   for (std::size_t v = 0; v < lining.skin.vertices.size(); ++v)
   {
     auto p = lining.skin.vertices[v], n = lining.skin.normals[v];
-    for (std::size_t axis = 0; axis < 3; ++axis)
-    {
-      p[axis] -= 4e-3F * n[axis];
-      n[axis] = -n[axis];
-    }
+    p[0] -= 4e-3F;
+    for (float& component : n)
+      component = -component;
     sheet.skin.vertices.push_back(p);
     sheet.skin.normals.push_back(n);
   }
@@ -136,9 +134,13 @@ TEST(Wrinkles, are_those_of_the_outer_skin)
 {
   const auto wave = [](double, double z) { return 0.5e-3 * std::cos(2 * pi * z / 12e-3); };
   const Sheet flat = sheet(0.8e-3, [](double, double) { return 0; }), waved = sheet(0.8e-3, wave);
-  const Wrinkles alone = WrinkleMeter(flat.skin, flat.triangles).measure(waved.skin);
+  WrinkleSettings part;
+  part.lower = { { -1, -30e-3, 10e-3 } };
+  part.upper = { { 1, 30e-3, 70e-3 } };
+  const Wrinkles alone = WrinkleMeter(flat.skin, flat.triangles, part).measure(waved.skin);
+  EXPECT_GT(alone.furrows.size(), 2u);
   const Sheet rest = lined(flat, flat), now = lined(waved, flat);
-  const Wrinkles found = WrinkleMeter(rest.skin, rest.triangles).measure(now.skin);
+  const Wrinkles found = WrinkleMeter(rest.skin, rest.triangles, part).measure(now.skin);
   EXPECT_EQ(found.furrows.size(), alone.furrows.size());
   EXPECT_NEAR(found.deepest, alone.deepest, 0.1 * alone.deepest);
   EXPECT_NEAR(found.spacing, alone.spacing, 0.1 * alone.spacing);

@@ -23,6 +23,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -81,11 +82,14 @@ private:
   void on_bone_pose(const geometry_msgs::TransformStamped& message);
 
   /// Calls `act` with the runner and the simulated time, with the mutex locked; refuses the message if there is no
-  /// runner, its stamp is not close to the present, or `act` throws. Returns the reason of a refusal.
+  /// runner, another face is taking its place, its stamp is not close to the present, or `act` throws. Returns the
+  /// reason of a refusal.
   template <typename Act>
   std::string take(const char* topic, const ros::Time& stamp, const Act& act);
+  /// `bones_end`: time at which bones reach the end of their motion; without, a motion under way goes on.
   void command(const char* topic, Runner& running, double now,
-               const std::map<std::string, MuscleCommands::Course>& courses, double begin, double end = 0);
+               const std::map<std::string, MuscleCommands::Course>& courses, double begin,
+               std::optional<double> bones_end = std::nullopt);
   /// Durations [s]: to reach a pose, to hold it (0: until the next command), and to relax after that.
   struct Timing
   {

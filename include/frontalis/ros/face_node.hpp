@@ -72,6 +72,8 @@ private:
   bool on_probe(Probe::Request& request, Probe::Response& response);
   /// The face that ~fit_activation is about. Throws an Error if there is none yet.
   FitAction::Face fitted_face() const;
+  /// Asks the present runner whether it is paused, which may have taken the place of the one that was called.
+  void note_pause();
   void on_config(FaceConfig& config, std::uint32_t level);
   /// Throws an Error if the configuration names something unknown, or an effect cannot be switched.
   void apply_config(Runner& running, const FaceConfig& config);
@@ -97,7 +99,7 @@ private:
   std::string loading_stage_ = "starting";
   FaceParameters parameters_;
 
-  std::mutex frame_mutex_;  ///< protects the members up to last_published_; never held while the runner is called
+  std::mutex frame_mutex_;  ///< protects the members up to last_published_; never held while the runner moves
   FacePublisher publisher_;
   const std::string loading_frame_;               ///< of the caption while there is no model
   std::atomic<std::uint64_t> present_face_{ 0 };  ///< whose frames are published; may be read without the mutex

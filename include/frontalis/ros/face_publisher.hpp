@@ -109,6 +109,8 @@ private:
   std::vector<ros::Publisher> bone_wrenches_;                  ///< topics of wrenches_ that are of bones
   ros::Publisher topology_, bodies_, muscles_, eyes_, caption_;
   MarkerNames shown_bodies_, shown_eyes_, shown_muscles_;
+  std::vector<visualization_msgs::Marker> removals_;            ///< of muscles of the face before
+  ros::WallTime removals_end_;                                  ///< until when they are sent
   visualization_msgs::MarkerArray body_markers_, eye_markers_;  ///< kept until they are published again
   std::optional<ros::WallTime> bodies_due_{};  ///< when bodies are published again; 0: to be decided at the next frame
   ros::NodeHandle handle_;

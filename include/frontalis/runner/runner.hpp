@@ -41,7 +41,7 @@ struct Frame
   std::string failure;           ///< the reason, in one sentence
 };
 
-constexpr double slowest_rate = 0.1, fastest_rate = 1000;  ///< limits of the frames per second of wall time
+constexpr double slowest_frame_rate = 0.1, fastest_frame_rate = 1000;  ///< limits of the frames per second of wall time
 
 enum class Pace
 {
@@ -91,9 +91,9 @@ public:
   /// expression moves. Throws an Error that lists the existing names if the name is unknown.
   void set_expression(const std::string& name);
 
-  /// Sets the motion of a bone from its rest pose, in the face frame. The bone moves there within about a frame, as
-  /// activations do. If there is no such bone, or the motion is not finite and rigid, nothing is changed and an Error
-  /// is thrown.
+  /// Sets the motion of a bone from its rest pose, in the face frame. The bone moves there within about a frame, but at
+  /// most 1/30 s, as activations do. If there is no such bone, or the motion is not finite and rigid, nothing is
+  /// changed and an Error is thrown.
   void set_bone(const std::string& name, const RigidTransform& motion);
   /// The motions to which bones move, in the order of the model's bones, from rest in the model's frame.
   std::vector<RigidTransform> bones() const;

@@ -131,8 +131,8 @@ std::string accuracy_report(const AccuracyFindings& findings, const std::string&
 /// The setting with its measured figures as an entry of `accuracy` in a scene file, "NAME: {...}"; lengths in mm.
 std::string profile_text(const AccuracyRow& row, const std::string& name, const std::string& machine);
 
-/// The cheapest setting of the front with an error of at most `tolerance` [m], and the most accurate one that costs at
-/// most `seconds` of wall time per simulated second. Throws Error with the nearest figures if there is none.
+/// The cheapest setting that a scene can have with an error of at most `tolerance` [m], and the most accurate one that
+/// costs at most `seconds` of wall time per simulated second. Throws Error with the nearest figures if there is none.
 const AccuracyRow& cheapest_within(const AccuracyFindings& findings, double tolerance);
 const AccuracyRow& most_accurate_within(const AccuracyFindings& findings, double seconds);
 

@@ -114,7 +114,7 @@ TriangleMesh piece_of(const TriangleMesh& mesh, const std::vector<std::int32_t>&
 
 /// Turns the pieces of an open mesh that are inside-out, and returns how many. Such a piece encloses points for which
 /// its own winding number and that of the whole mesh are clearly negative; the wall of a cavity has a negative one by
-/// itself only. Pieces with few triangles enclose little and are left alone.
+/// itself only. Pieces with few triangles enclose little and are left alone, as are pieces inside of others.
 std::size_t turn_pieces_of_open(TriangleMesh& mesh, const std::vector<std::int32_t>& piece)
 {
   constexpr std::size_t least_triangles = 100;

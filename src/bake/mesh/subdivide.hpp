@@ -18,8 +18,9 @@ struct PolygonMesh
 /// keeps the order of the vertices. Throws Error naming the file and line.
 PolygonMesh read_polygons(const std::string& file, double unit);
 
-/// Adds the mirror image at the plane of the coordinate `axis` = 0. Vertices less than 1e-9 m away from the plane are
-/// moved onto it and shared. Vertices of the mesh keep their numbers; mirror[v] is the number of the image of v.
+/// Adds the mirror image at the plane of the coordinate `axis` = 0. Vertices less than 1e-5 of the mesh's extent away
+/// from the plane are moved onto it and shared. Vertices of the mesh keep their numbers; mirror[v] is the number of the
+/// image of v.
 PolygonMesh with_mirror_image(const PolygonMesh& half, int axis, std::vector<std::int32_t>* mirror = nullptr);
 
 /// Makes `levels` steps of Catmull & Clark's subdivision (Computer-Aided Design 10(6), 1978) and then moves each vertex

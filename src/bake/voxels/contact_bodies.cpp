@@ -1,8 +1,8 @@
 #include "bake/voxels/contact_bodies.hpp"
 
 #include "bake/mesh/cluster_search.hpp"
-#include "bake/mesh/remesh.hpp"
 #include "bake/mesh/halve_edges.hpp"
+#include "bake/mesh/remesh.hpp"
 #include "bake/messages.hpp"
 #include "frontalis/model/sample_field.hpp"
 

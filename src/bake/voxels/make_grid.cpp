@@ -99,7 +99,7 @@ Grid make_grid(const Scene& scene, const Volumes& volumes)
   if (voxels > most_voxels || bytes > available)
     throw failure("{}{} voxels of {} and about {:.3g} GB, and {:.3g} GB are free; at most {} voxels are possible{}",
                   spans, number_text(voxels), edges_text(spacing), bytes / 1e9, available / 1e9,
-                  number_text(std::min(most_voxels, available / bytes_per_voxel)), advice);
+                  number_text(std::min(most_voxels, available * voxels / bytes)), advice);
   Grid grid;
   grid.lower = box.min();
   grid.spacing = spacing;

@@ -1,7 +1,7 @@
 #include "bake/voxels/shells.hpp"
 
-#include "bake/mesh/remesh.hpp"
 #include "bake/mesh/halve_edges.hpp"
+#include "bake/mesh/remesh.hpp"
 #include "bake/messages.hpp"
 #include "frontalis/physics/hourglass.hpp"
 #include "frontalis/physics/materials/lookup.hpp"

@@ -86,9 +86,14 @@ void weaken_muscles(const Scene& scene, const LocalFrame& frame, Model& model, B
   {
     const SceneWeakness& weakness = scene.weakness[w];
     // Muscles whose effect is switched off have no fibres.
-    bool lacks_fibres = false;
+    bool is_known = false, has_fibres = false;
     for (std::size_t m = 0; m < whole.size(); ++m)
-      lacks_fibres = lacks_fibres || (whole[m] == 0 && is_of(weakness, model.muscles[m].name));
+      if (is_of(weakness, model.muscles[m].name))
+      {
+        is_known = true;
+        has_fibres = has_fibres || whole[m] > 0;
+      }
+    const bool lacks_fibres = is_known && !has_fibres;
     if (!lacks_fibres && weakness.radius > 0 && weakness.keeps < 1 && !weakens[w])
       throw failure("{}: weakness: no voxel of {} lies within {} of {}; check its place and radius", scene.file,
                     weakness.muscles.empty() ? "a muscle" : fmt::format("{}", fmt::join(weakness.muscles, ", ")),

@@ -70,17 +70,15 @@ void Study::choose_reference()
       bench_.set_reference(levels[level]);
     const double takes = bench_.predicted(levels[level]);
     const double share = plan_.budget > 0 && level > 1 ? takes / plan_.budget : 0;
-    if (level > 2 && share > 0.4)
+    AccuracyPlan shorter = plan_;
+    shorter.edges.resize(level);
+    const bool is_needed = !plan_.exact && level > 2 && is_too_fine(plan_.standard, shorter);
+    if (level > 2 && share > 0.4 && !is_needed)
     {
       findings_.notes.push_back(
           fmt::format("Voxels of {}{} were left out: they would take about {:.2g} s, too much of the budget.",
                       millimetres(edges[level]), level + 1 < edges.size() ? " and less" : "", takes));
       edges.resize(level);
-      if (!plan_.exact && is_too_fine(plan_.standard, plan_))
-        throw Error(
-            fmt::format("a budget of {:.4g} s is too small for a comparison: the reference must have smaller voxels "
-                        "than the standard setting, and {} alone would take about {:.2g} s here; allow more",
-                        plan_.budget, millimetres(levels[level].profile.voxel[0]), takes));
       break;
     }
     if (share > 0.8)

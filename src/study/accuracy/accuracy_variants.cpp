@@ -63,6 +63,8 @@ std::string edge_text(const Vector3& voxel)
 void set_edge(AccuracyProfile& profile, double edge)
 {
   const double before = profile.voxel[0];
+  if (edge == before)
+    return;
   for (double& along : profile.voxel)
     along = along == before ? edge : edge * (along / before);
 }

@@ -331,11 +331,12 @@ WrinkleMeter::WrinkleMeter(SkinState rest, SkinTriangles triangles, const Wrinkl
                            const Progress& progress)
     : rest_(std::move(rest)), triangles_(std::move(triangles)), settings_(settings)
 {
-  // The ridges beside a furrow of the box may lie outside.
+  // The ridges beside a furrow of the box may lie outside. Skin that faces backwards, such as the lining of the lips,
+  // lies behind the skin of the face and would mix with it.
   const double margin = reach * settings.window;
   const auto near = [&](std::int32_t v)
   {
-    bool inside = true;
+    bool inside = rest_.normals[v][0] > -0.3F;
     for (int axis = 0; axis < 3; ++axis)
       inside = inside && rest_.vertices[v][axis] > settings.lower[axis] - margin &&
                rest_.vertices[v][axis] < settings.upper[axis] + margin;

@@ -1,5 +1,6 @@
 // Compares the bending of voxels under each hourglass control with a converged solution, and vibrations with theory.
 
+#include "frontalis/physics/time_step.hpp"
 #include "study/verification/verification_cases.hpp"
 
 #include <fmt/format.h>
@@ -79,7 +80,7 @@ void verify_cantilever(const Backend&, Finding& finding)
           const auto found = deflection(poisson, n, hourglass_forms[f], ratio);
           error[f] = 100 * (found.tip_force / converged.tip_force - 1);
           weight[f] = 100 * (found.own_weight / converged.own_weight - 1);
-          worst[f][!cubes] = std::max(worst[f][!cubes], std::abs(error[f]));
+          worst[f][!cubes] = physics::larger_or_none(worst[f][!cubes], std::abs(error[f]));
           if (poisson == 0.49 && (cubes || (f == 1 && ratio == ratios[1])))
             plot.curves[cubes ? f : 2].add(n, error[f]);
         }

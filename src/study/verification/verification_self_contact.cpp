@@ -208,7 +208,8 @@ void collide(const Backend& backend, Finding& finding)
   const Wrench after = momenta();
   double change[2] = { 0, 0 };
   for (std::size_t i = 0; i < 6; ++i)
-    change[i / 3] = std::max(change[i / 3], std::abs(after[i] - before[i]) / std::abs(before[i < 3 ? 2 : 4]));
+    change[i / 3] =
+        physics::larger_or_none(change[i / 3], std::abs(after[i] - before[i]) / std::abs(before[i < 3 ? 2 : 4]));
   finding.checks.absolute("change of momentum, " + backend, "1e-6", 0, 1e6 * change[0], 10);
   finding.checks.absolute("change of angular momentum, " + backend, "1e-6", 0, 1e6 * change[1], 10);
 }
