@@ -177,7 +177,7 @@ class Scenes(unittest.TestCase):
             self.assertTrue(self.face.reset().success)
             wait(lambda: lifted(0), "the bone at rest")
             wait(lambda: lifted(0.003), "the bone above it")
-            self.assertLess(self.face.state.time, 19)
+            self.assertLess(self.face.state.time, 2 * LIMIT)
 
 
 if __name__ == "__main__":

@@ -73,7 +73,7 @@ void settle_joints(const EffectSet& switched_off, Model& model)
       }
       continue;
     }
-    if (!switched_off.has(Effect::attachment) && share(group, attached))
+    if (share(group, attached))
     {
       for (const std::int32_t node : group)
         sliding.erase(node);
