@@ -39,7 +39,9 @@ std::string verdict_of(const Trial& trial)
   if (!failed.empty())
     return "FAILED: " + failed;
   if (trial.stopped.empty())
-    return trial.rollbacks > 0 ? fmt::format("held; the guard went back {} times", trial.rollbacks) : "held";
+    return trial.rollbacks == 0   ? "held"
+           : trial.rollbacks == 1 ? "held; guard: once"
+                                  : fmt::format("held; guard: {} times", trial.rollbacks);
   return "stopped with a report: " + trial.stopped;
 }
 
@@ -150,8 +152,8 @@ void write_stability(const Trials& trials, const std::string& folder)
       "A case must hold, or be stopped with a report and the last good state. It passes when all its checks do and "
       "every energy, volume ratio and displacement stays finite.\n\n"
       "A guard watches every motion, in these cases and in use. When it finds a fault, it returns to the latest good "
-      "state and takes shorter steps for a while: *the guard went back*. After three tries it stops the motion with a "
-      "report that names the voxel and the likely cause ([an example](#held_neighbours)).\n\n"
+      "state and takes shorter steps for a while; in the tables, *guard: once* says that it did so once. After three "
+      "tries it stops the motion with a report that names the voxel and the likely cause ([an example](#held_neighbours)).\n\n"
       "    ./dev cli stability --all --mesh-dir DIR --markdown FOLDER    # writes this page\n\n"
       "`--models DIR` writes the model of each motion. Each case has a file in test/stability with its description, "
       "sizes, times and bounds.\n\n"

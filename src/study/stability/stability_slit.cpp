@@ -98,7 +98,7 @@ void opened_slit(CaseRun& run)
   for (int round = 0; round < 2; ++round)
   {
     motion.advance({ run.seconds("moving"), open, 20 });
-    run.check("share of the way by which the slit is open", "", 1,
+    run.check("opening of the slit over the prescribed displacement", "", 1,
               1e3 * widths(motion, length).second / run.number("open", "mm"), "opening");
     motion.advance({ run.seconds("moving"), shut, 20 });
     run.check("depth of its sides in each other", "mm", 0, -1e3 * widths(motion, length).first, "depth");
