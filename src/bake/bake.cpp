@@ -292,6 +292,7 @@ Model bake(const Scene& given, BakeReport* report, const BakeProgress& progress)
   check_holes(scene, surfaces, volumes, monitor);
   find_surfaces_apart(scene, volumes, monitor);
   find_filled_surfaces(scene, surfaces, volumes, monitor);
+  check_places(scene, surfaces, volumes, monitor);
 
   monitor.begin("voxels");
   Model model;
@@ -332,7 +333,7 @@ Model bake(const Scene& given, BakeReport* report, const BakeProgress& progress)
   settle_joints(scene.switched_off, model);
 
   add_fibres(scene, fibres, frame, model, monitor);
-  scale_strength(scene, fibres, frame, model, report);
+  scale_strength(scene, fibres, frame, model, monitor, report);
   if (scene.accuracy.fibres == "spread")
     spread_fibres(model);
 

@@ -3,6 +3,7 @@
 #include "bake/messages.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace frontalis
@@ -82,6 +83,33 @@ void check_pairs(const Scene& scene, const std::map<std::string, Thing>& things,
         first_across);
 }
 
+/// Warns of names that look like those of sides but are not NAME_left and NAME_right.
+void find_other_names_of_sides(const Scene& scene, const std::map<std::string, Thing>& things, BakeMonitor& monitor)
+{
+  constexpr std::array<std::array<const char*, 2>, 5> sides{
+    { { "left", "right" }, { "links", "rechts" }, { "gauche", "droite" }, { "izquierda", "derecha" }, { "l", "r" } }
+  };
+  const auto named = [&](const std::string& left, const std::string& right)
+  { return things.count(left) > 0 && things.count(right) > 0; };
+  for (const auto& [name, thing] : things)
+    for (const auto& [left, right] : sides)
+      for (const bool first : { false, true })
+        for (const char separator : { '_', '-', '.', ' ' })
+        {
+          const std::string part = first ? std::string(left) + separator : separator + std::string(left);
+          const std::size_t at = first ? 0 : name.size() - std::min(name.size(), part.size());
+          if (part == "_left" || name.compare(at, part.size(), part) != 0)
+            continue;
+          const std::string rest = first ? name.substr(part.size()) : name.substr(0, at);
+          const std::string other = first ? std::string(right) + separator + rest : rest + separator + right;
+          if (named(name, other))
+            return monitor.warn(
+                "{}: '{}' and '{}' look like two sides, but only NAME_left and NAME_right are taken for such: rename "
+                "them, here to '{}_left' and '{}_right', so that exchanged sides are found and expressions have halves",
+                scene.file, name, other, rest, rest);
+        }
+}
+
 /// Warns of surfaces from different files, and of surfaces of different muscles, that have the same mesh.
 void find_equal_surfaces(const Scene& scene, const PreparedSurfaces& surfaces, BakeMonitor& monitor)
 {
@@ -134,6 +162,7 @@ void check_sides(const Scene& scene, const PreparedSurfaces& surfaces, BakeMonit
       if (given.name == surface->name())
         things[given.name] = { place_in_scene(scene, "surface", given), surface->box() };
   check_pairs(scene, things, monitor);
+  find_other_names_of_sides(scene, things, monitor);
   things.clear();
   for (const SceneLandmark& landmark : scene.landmarks)
     if (!landmark.head)

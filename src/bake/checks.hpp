@@ -42,6 +42,11 @@ void check_sides(const Scene& scene, const PreparedSurfaces& surfaces, BakeMonit
 /// other side or lie in the middle. Sides are those of the pairs of surfaces NAME_left and NAME_right.
 void check_holes(const Scene& scene, const PreparedSurfaces& surfaces, const Volumes& volumes, BakeMonitor& monitor);
 
+/// Warns of surfaces beside the tissue, such as bones, that overlap although they move with different bones; of centres
+/// far from their bones; and of pairs NAME_left, NAME_right that are not mirror images of each other's places, as other
+/// pairs are. Reports surfaces beside the tissue that no constraint names.
+void check_places(const Scene& scene, const PreparedSurfaces& surfaces, const Volumes& volumes, BakeMonitor& monitor);
+
 /// Warns of materials, muscles, layers and gravity that are so far from any tissue, bone or silicone that a unit is
 /// probably missing or wrong: a number without a unit is in SI units, so that 'young: 34' is 34 Pa.
 void check_magnitudes(const Scene& scene, const Model& model, BakeMonitor& monitor);

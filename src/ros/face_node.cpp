@@ -152,6 +152,8 @@ void FaceNode::replace_face(const FaceParameters& parameters)
   // frames of the new runner are ignored until it has replaced the present one
   const std::uint64_t face = ++faces_made_;
   RunnerSettings settings = parameters.runner;
+  if (ros::Time::isSimTime())
+    settings.clock = [] { return ros::Time::now().toSec(); };
   settings.wanted_field = [this] { return publisher_.wanted_field(); };
   settings.wants_displacements = [this] { return publisher_.shows_muscles(); };
   // ROS waits for the callback of a long ~step before it lets this object be destroyed.

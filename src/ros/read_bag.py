@@ -23,16 +23,24 @@ def fail(reason):
     sys.exit("read_bag: " + reason)
 
 
+def full(topic):
+    return "/" + topic.strip("/")
+
+
 def moments(bag, options):
     """Yields the time [s], the landmarks, and position and effort of each joint by its name, of each moment to be written."""
-    places, names = "/%s/landmarks" % options.face.strip("/"), "/%s/state" % options.face.strip("/")
-    joint_topic = "/" + options.joints.strip("/")
+    places, names = full(options.face) + "/landmarks", full(options.face) + "/state"
+    joint_topic = full(options.joints)
     joints = {}  # the latest position and effort of each joint; several nodes may publish some of the joints each
     held = {}  # the positions at which the joints stand still since the time `moved`
     unheard = set()  # joints without a message since the landmarks of `pending`
     moved = start = due = names_of = pending = confirmed = None
-    for topic, message, stamp in bag.read_messages([places, names, joint_topic]):
-        now = stamp.to_sec()
+    # rosbag record stores the names of topics as they were given, with or without the slash in front.
+    topics = [topic for topic in bag.get_type_and_topic_info().topics if full(topic) in (places, names, joint_topic)]
+    if options.still and joint_topic not in map(full, topics):
+        fail("%s: has no messages on %s, but on %s" % (options.bag, joint_topic, ", ".join(bag.get_type_and_topic_info().topics)))
+    for topic, message, stamp in bag.read_messages(topics):
+        topic, now = full(topic), stamp.to_sec()
         if topic == names:
             names_of = message.landmark
         elif topic == joint_topic:

@@ -34,7 +34,14 @@ def wait(condition, what):
 class Replay:
     def __init__(self, face, topics):
         self.face = "/" + face.strip("/")
-        rospy.wait_for_service(self.face + "/step", LIMIT)
+        try:
+            rospy.wait_for_service(self.face + "/step", 3)
+        except rospy.ROSException:
+            print("replay_bag: waiting for the service %s/step" % self.face, flush=True)
+            rospy.wait_for_service(self.face + "/step", LIMIT)
+        pace = rospy.get_param(self.face + "/pace", "real_time")
+        if pace != "lock_step":
+            sys.exit("replay_bag: %s has the pace %s; it must run with pace:=lock_step" % (self.face, pace))
         self.list_muscles = rospy.ServiceProxy(self.face + "/list_muscles", ListMuscles, persistent=True)
         self.step = rospy.ServiceProxy(self.face + "/step", Step, persistent=True)
         self.clock = rospy.Publisher("/clock", Clock, queue_size=10)
@@ -73,7 +80,9 @@ class Replay:
 
     def run(self, bag, rate, output):
         names = ["%s/%s" % (self.face, topic) for topic in INPUTS]
-        commands = [(stamp, topic, message) for topic, message, stamp in bag.read_messages(names)]
+        # rosbag record stores the names of topics as they were given, with or without the slash in front.
+        stored = [topic for topic in bag.get_type_and_topic_info().topics if "/" + topic.strip("/") in names]
+        commands = [(stamp, "/" + topic.strip("/"), message) for topic, message, stamp in bag.read_messages(stored) if stored]
         if not commands:
             sys.exit("replay_bag: the bag has no message on any of " + " ".join(names))
         start = commands[0][0]

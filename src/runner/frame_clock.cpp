@@ -1,41 +1,41 @@
 #include "runner/frame_clock.hpp"
 
+#include <algorithm>
+
 namespace frontalis
 {
-namespace
-{
 
-double seconds(FrameClock::TimePoint from, FrameClock::TimePoint to)
-{
-  return std::chrono::duration<double>(to - from).count();
-}
-
-}  // namespace
-
-void FrameClock::restart(TimePoint now, double simulated)
+void FrameClock::restart(double now, double simulated)
 {
   start_ = now;
   simulated_start_ = simulated;
+  factor_ = 0;
   frames_.assign(1, { now, simulated });
 }
 
-double FrameClock::behind(TimePoint now, double simulated, double limit)
+double FrameClock::behind(double now, double simulated, double limit)
 {
-  const double behind = simulated_start_ + seconds(start_, now) - simulated;
-  if (behind <= limit)
-    return behind;
-  start_ = now;
-  simulated_start_ = simulated + limit;
-  return limit;
+  const double behind = simulated_start_ + (now - start_) - simulated, within = std::clamp(behind, -limit, limit);
+  if (within != behind)
+  {
+    start_ = now;
+    simulated_start_ = simulated + within;
+  }
+  return within;
 }
 
-double FrameClock::record_frame(TimePoint now, double simulated)
+double FrameClock::record_frame(double now, double simulated)
 {
+  if (now < frames_.back().first)
+    frames_.clear();
+  else if (now == frames_.back().first && frames_.size() > 1)
+    frames_.pop_back();
   frames_.push_back({ now, simulated });
-  while (frames_.size() > 2 && seconds(frames_[1].first, now) > 1)
+  while (frames_.size() > 2 && now - frames_[1].first > 1)
     frames_.pop_front();
-  const double wall = seconds(frames_.front().first, now);
-  return wall > 0 ? (simulated - frames_.front().second) / wall : 0;
+  if (now > frames_.front().first)
+    factor_ = (simulated - frames_.front().second) / (now - frames_.front().first);
+  return factor_;
 }
 
 }  // namespace frontalis

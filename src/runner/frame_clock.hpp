@@ -7,26 +7,26 @@
 namespace frontalis
 {
 
-/// Relates simulated time to wall time: how far the simulation is behind the wall clock, and the real-time factor over
-/// the last second. The caller gives all times, wall times as time points and simulated times in seconds.
+/// Relates simulated time to a clock: how far the simulation is behind it, and the real-time factor over its last
+/// second. The caller gives all times [s]. The clock may stand still and jump.
 class FrameClock
 {
 public:
-  using TimePoint = std::chrono::steady_clock::time_point;
-
   /// Starts again, for instance after a pause: the simulation counts as neither behind nor ahead at `now`.
-  void restart(TimePoint now, double simulated);
-  /// Returns by how many seconds the simulated time is behind the wall clock; negative if it is ahead. At most `limit`
-  /// is returned: a simulation that is further behind need not make up for the rest.
-  double behind(TimePoint now, double simulated, double limit);
-  /// Records a frame and returns the real-time factor: simulated seconds divided by wall seconds since the latest
-  /// recorded frame that is older than a second, or since the restart.
-  double record_frame(TimePoint now, double simulated);
+  void restart(double now, double simulated);
+  /// Returns by how many seconds the simulated time is behind the clock; negative if it is ahead. The result is within
+  /// `limit`: a simulation that is further behind need not make up for the rest, and one that is further ahead, because
+  /// the clock was set back, need not wait for it.
+  double behind(double now, double simulated, double limit);
+  /// Records a frame and returns the real-time factor: simulated seconds divided by those of the clock since the latest
+  /// recorded frame that is older than a second, or since the restart. While the clock stands still the factor stays.
+  double record_frame(double now, double simulated);
 
 private:
-  TimePoint start_{};           ///< wall time at which the simulation was neither behind nor ahead
+  double start_ = 0;            ///< time at which the simulation was neither behind nor ahead [s]
   double simulated_start_ = 0;  ///< simulated time at start_ [s]
-  std::deque<std::pair<TimePoint, double>> frames_;
+  double factor_ = 0;           ///< the latest real-time factor
+  std::deque<std::pair<double, double>> frames_;
 };
 
 }  // namespace frontalis

@@ -53,7 +53,7 @@ std::string speed_report(const Model& model, double real_time_factor)
                         "{:.2g} mm RMS",
                         fast_enough->name, fast_enough->cost * slower_than_measured, 1e3 * fast_enough->error);
   report += "no profile of the scene would run in real time; ";
-  return cheapest == present ? report + "this is the cheapest"
+  return cheapest == present ? report + "this is the cheapest; a lower frame rate and fewer subscribers save time"
                              : report + fmt::format("the cheapest, '{}', would have a real-time factor of about {:.2g}",
                                                     cheapest->name, 1 / (cheapest->cost * slower_than_measured));
 }

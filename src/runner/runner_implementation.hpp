@@ -69,6 +69,11 @@ struct Runner::Implementation
   std::thread thread;
 
   bool reset_wanted() const { return resets_wanted > resets_begun; }
+  /// Time of the clock that the face follows [s].
+  double now() const
+  {
+    return settings.clock ? settings.clock() : std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
+  }
   /// Wall time per frame [s].
   double period() const { return 1 / frame_rate; }
   /// Simulated time multiplied by Model::time_scaling, the time of activations and frames [s].

@@ -19,6 +19,7 @@ namespace
 constexpr int steps_per_slice = 16;
 // Wall time after a frame before progress is told: somewhat less than a fiftieth of a second.
 constexpr std::chrono::milliseconds progress_period(18);
+constexpr double coarsest_clock = 0.5;         // longest time in which a clock of RunnerSettings may stand still [s]
 constexpr double longest_approach = 1.0 / 30;  // time in which controls approach their targets at the most [s]
 // Wall time between two computations of the energies and volume ratios.
 constexpr std::chrono::seconds monitor_period(1);
@@ -153,7 +154,7 @@ void Runner::Implementation::make_frame(bool renew_monitor)
 
 void Runner::Implementation::publish(bool renew_monitor, bool hands_out)
 {
-  frame.real_time_factor = clock.record_frame(Clock::now(), time());
+  frame.real_time_factor = clock.record_frame(now(), time());
   make_frame(renew_monitor);
   if (on_frame && (hands_out || frame.failed))
     on_frame(frame);
@@ -187,9 +188,9 @@ void Runner::Implementation::run_frame()
   // quarter of its length; frames that were missed completely are skipped.
   deadline = std::max(deadline + length, Clock::now() + length / 4);
   deadline = std::min(deadline, Clock::now() + length);
-  const double end = settings.pace == Pace::fastest
-                         ? time() + 1e9
-                         : time() + clock.behind(Clock::now(), time(), 2 * period()) + period();
+  const double most_behind = settings.clock ? coarsest_clock : 2 * period();
+  const double end =
+      time() + (settings.pace == Pace::fastest ? 1e9 : clock.behind(now(), time(), most_behind) + period());
   const auto interrupted = [this] { return stop || paused || reset_wanted() || step_request != nullptr; };
   // A frame has one slice at the least, so that a face that steps slowly is still seen to move.
   for (bool is_first = true; !frame.failed && time() < end && (is_first || Clock::now() < deadline); is_first = false)
@@ -238,7 +239,7 @@ void Runner::Implementation::serve_step(StepRequest& request)
   if (frame.failed)
     request.error = frame.failure + "; reset first";
   const Controls begin = solver->controls();
-  clock.restart(Clock::now(), time());
+  clock.restart(now(), time());
   const auto interrupted = [this]
   { return stop || reset_wanted() || cancel_wanted || (settings.ends_steps && settings.ends_steps()); };
   for (double done = 0; done < request.seconds && request.error.empty();)
@@ -314,7 +315,7 @@ void Runner::Implementation::reset()
     guard->restart();
   frame.failed = false;
   frame.failure.clear();
-  clock.restart(Clock::now(), 0);
+  clock.restart(now(), 0);
   publish(true);
   const std::lock_guard<std::mutex> lock(mutex);
   reset_error.clear();
@@ -323,7 +324,7 @@ void Runner::Implementation::reset()
 
 void Runner::Implementation::serve_until_stopped()
 {
-  clock.restart(Clock::now(), time());
+  clock.restart(now(), time());
   for (;;)
   {
     StepRequest* request = nullptr;
@@ -365,7 +366,7 @@ void Runner::Implementation::serve_until_stopped()
     else
     {
       if (was_idle)
-        clock.restart(Clock::now(), time());
+        clock.restart(now(), time());
       run_frame();
       continue;
     }

@@ -233,7 +233,7 @@ TEST(Voxelise, WarnsOfMusclesMostlyClippedAndOfSurfacesFarFromTheTissue)
   scene.materials[0].density = 1.1;
   scene.muscles[0].cross_section = 60;
   bake(scene, &report);
-  ASSERT_EQ(report.warnings.size(), 3u);
+  ASSERT_EQ(report.warnings.size(), 4u);
   EXPECT_NE(report.warnings[0].find("density is 1.1 kg/m3, expected 100 to 20000"), std::string::npos);
   EXPECT_NE(report.warnings[1].find("muscle 'a': cross_section is 60 m2"), std::string::npos);
 }

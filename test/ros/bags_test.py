@@ -70,15 +70,16 @@ class Bags(unittest.TestCase):
         those of landmarks, and come from two nodes; one joint has noise."""
         with tempfile.TemporaryDirectory() as folder:
             with rosbag.Bag(folder + "/babbling.bag", "w") as bag:
-                bag.write("/face/state", SimulationState(landmark=["tip"]), rospy.Time(9))
+                # rosbag record stores names of topics as they were given
+                bag.write("face/state", SimulationState(landmark=["tip"]), rospy.Time(9))
                 for index in range(120):
                     now = rospy.Time.from_sec(10 + 0.01 * index)
                     position = min(2e-3, max(0, 1e-4 * (index - 14))) + min(3e-3, max(0, 1e-4 * (index - 64)))
                     if index % 4 == 0:
                         joint = JointState(name=["lift"], position=[position], effort=[1e3 * position])
-                        bag.write("/joint_states", joint, now)
+                        bag.write("joint_states", joint, now)
                     elif index % 4 == 2:
-                        bag.write("/joint_states", JointState(name=["turn"], position=[0.3 + 2e-5 * (index % 3)]), now)
+                        bag.write("joint_states", JointState(name=["turn"], position=[0.3 + 2e-5 * (index % 3)]), now)
                     tip = Pose(position=Point(0.1, 0, 2 * position - 0.05))
                     bag.write("/face/landmarks", PoseArray(poses=[tip]), now + rospy.Duration(0.001))
             self.run_script("read_bag.py", folder + "/babbling.bag", folder, "--still", "0.05")
@@ -96,6 +97,8 @@ class Bags(unittest.TestCase):
             self.assertEqual(len(track), 12)
             with self.assertRaisesRegex(AssertionError, "no pose in which all joints on /joint_states stand still for 5 s"):
                 self.run_script("read_bag.py", folder + "/babbling.bag", folder, "--still", "5")
+            with self.assertRaisesRegex(AssertionError, "has no messages on /joints, but on .*joint_states"):
+                self.run_script("read_bag.py", folder + "/babbling.bag", folder, "--still", "0.05", "--joints", "joints")
 
     def test_plays_the_last_command_and_one_frame_for_each_moment(self):
         """Commands come at the ends of frames, in nanoseconds. The long step of a moving face has pieces that are not published."""

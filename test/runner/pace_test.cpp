@@ -44,6 +44,41 @@ TEST(Runner, RealTimeKeepsPaceWithTheClock)
   EXPECT_LE(frames.back().real_time_factor, 1 + 3 / rate + 1e-6);
 }
 
+TEST(Runner, FollowsAGivenClock)
+{
+  constexpr double rate = 50;
+  std::atomic<double> clock{ 1e9 }, time{ 0 };
+  std::atomic<int> frames{ 0 };
+  RunnerSettings with_clock = settings(Pace::real_time, rate);
+  with_clock.clock = [&] { return clock.load(); };
+  Runner runner(fast_bar(), with_clock,
+                [&](const Frame& frame)
+                {
+                  time = frame.time;
+                  ++frames;
+                });
+  const auto wait_for_frames = [&](int count)
+  {
+    const int from = frames;
+    EXPECT_TRUE(comes_true([&] { return frames > from + count; }));
+  };
+  // it stands still with the clock, at most a frame ahead of it, and still hands out frames
+  wait_for_frames(10);
+  EXPECT_LE(time, 1 / rate + 1e-6);
+  // and follows it, however rarely the clock tells its time
+  clock = 1e9 + 0.4;
+  EXPECT_TRUE(comes_true([&] { return time > 0.39; }));
+  wait_for_frames(10);
+  EXPECT_LE(time, 0.4 + 1 / rate + 1e-6);
+  // set back, the clock does not stop it for long
+  const double before = time;
+  clock = 1000;
+  wait_for_frames(2);
+  EXPECT_EQ(time, before);
+  clock = 1001;
+  EXPECT_TRUE(comes_true([&] { return time > before + 0.3; }));
+}
+
 TEST(Runner, FastestRunsAheadOfTheClock)
 {
   std::atomic<double> factor{ 0 };

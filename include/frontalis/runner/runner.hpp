@@ -19,7 +19,8 @@ struct Frame
 {
   double time = 0;              ///< simulated time since the latest reset, multiplied by Model::time_scaling [s]
   double wall_time = 0;         ///< wall time since the runner started [s]
-  double real_time_factor = 0;  ///< simulated time divided by wall time, over about the last second
+  /// simulated time divided by wall time, or by the time of RunnerSettings::clock, over about the last second
+  double real_time_factor = 0;
   double time_step = 0;         ///< of the solver [s]
   std::int64_t steps = 0;       ///< solver steps since the latest reset
   std::uint64_t sequence = 0;   ///< number of the frame
@@ -45,7 +46,7 @@ constexpr double slowest_frame_rate = 0.1, fastest_frame_rate = 1000;  ///< limi
 
 enum class Pace
 {
-  real_time,  ///< not faster than the wall clock
+  real_time,  ///< not faster than the wall clock, or than RunnerSettings::clock
   fastest,    ///< as fast as the machine can
   lock_step   ///< the face moves only in step()
 };
@@ -56,6 +57,9 @@ struct RunnerSettings
   Pace pace = Pace::real_time;
   double frame_rate = 0;  ///< frames per second of wall time, 0.1 to 1000; 0: the model's
   std::optional<GuardSettings> guard = GuardSettings{};  ///< empty: the motion is not checked
+  /// The clock [s] that a face at the pace of real time follows instead of the wall clock. It may stand still, go at any
+  /// speed and jump. Called in the runner's thread.
+  std::function<double()> clock{};
   /// Called once per frame in the runner's thread; returns the field of the skin to compute. If the function is not set
   /// or returns nothing, no field is computed.
   std::function<std::optional<SkinField>()> wanted_field{};

@@ -36,8 +36,9 @@ void spread_fibres(Model& model);
 
 /// Scales the reference stress of each muscle for which the scene gives a cross-section, by the given cross-section
 /// divided by the model's. The muscle is then as strong as in people. The model's cross-section is the muscle's volume
-/// in voxels divided by the mean length of its fibres. Lists all muscles in the report.
+/// in voxels divided by the mean length of its fibres. Warns of muscles without much of their cross-section. Lists all
+/// muscles in the report.
 void scale_strength(const Scene& scene, const std::vector<MuscleFibres>& fibres, const LocalFrame& frame, Model& model,
-                    BakeReport* report);
+                    BakeMonitor& monitor, BakeReport* report);
 
 }  // namespace frontalis

@@ -1,10 +1,13 @@
 #include "bake/fibres/fibres.hpp"
 
+#include "bake/messages.hpp"
+
 namespace frontalis
 {
 void scale_strength(const Scene& scene, const std::vector<MuscleFibres>& fibres, const LocalFrame& frame, Model& model,
-                    BakeReport* report)
+                    BakeMonitor& monitor, BakeReport* report)
 {
+  constexpr double thinnest = 0.1;  // share of its cross-section in people below which a muscle is probably damaged
   struct Extent
   {
     double volume = 0, first = 1e300, last = -1e300;
@@ -33,6 +36,12 @@ void scale_strength(const Scene& scene, const std::vector<MuscleFibres>& fibres,
     force.given = scene.muscles[m].cross_section;
     if (force.given > 0 && force.cross_section > 0)
       muscle.stress_reference *= force.given / force.cross_section;
+    if (force.cross_section < thinnest * force.given)
+      monitor.warn(
+          "{} has {:.2g} mm2 of its cross-section of {:.3g} mm2 in the model, so that its stress is {:.0f} times its "
+          "'stress_reference': check the thickness of its surface, and how much of it lies in the tissue",
+          place_in_scene(scene, "muscle", scene.muscles[m]), 1e6 * force.cross_section, 1e6 * force.given,
+          force.given / force.cross_section);
     force.force = muscle.stress_reference * force.cross_section;
     if (report != nullptr)
       report->forces.push_back(force);

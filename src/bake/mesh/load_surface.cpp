@@ -258,11 +258,13 @@ void describe(const MeshFaults& faults, double unit, const Found& found)
   found(text);
 }
 
-/// What to say of small pieces that lie apart from the others, such as those that a segmentation leaves; empty without.
+/// What to say of small pieces that lie apart from the others, or that enclose again what the others enclose, such as
+/// those that a segmentation leaves; empty without.
 std::string stray_pieces(const TriangleMesh& mesh, const std::vector<std::int32_t>& piece, double unit)
 {
-  constexpr double small = 0.01;  // share of the area
-  constexpr double apart = 0.1;   // distance from the box around the other pieces, in diagonals of this box
+  constexpr double small = 0.01;          // share of the area
+  constexpr double apart = 0.1;           // distance from the box around the other pieces, in diagonals of this box
+  constexpr double enclosed_again = 1.4;  // winding number in a piece; that around it is less than 1 in an open surface
   struct Piece
   {
     double area = 0;
@@ -284,15 +286,24 @@ std::string stray_pieces(const TriangleMesh& mesh, const std::vector<std::int32_
       large.extend(of.box);
   if (large.isEmpty())  // no piece is large
     return {};
+  std::optional<TriangleTree> tree;
   const auto strays = [&](const Piece& of)
-  { return of.area < small * whole && large.exteriorDistance(of.box.center()) > apart * large.diagonal().norm(); };
+  {
+    if (of.area >= small * whole)
+      return false;
+    if (large.exteriorDistance(of.box.center()) > apart * large.diagonal().norm())
+      return true;
+    if (!tree)
+      tree.emplace(mesh);
+    return tree->winding_number(of.box.center()) > enclosed_again;
+  };
   const auto count = static_cast<std::size_t>(std::count_if(pieces.begin(), pieces.end(), strays));
   if (count == 0)
     return {};
   const Piece& first = *std::find_if(pieces.begin(), pieces.end(), strays);
   return fmt::format(
-      "has {} of less than a hundredth of its area apart from the others, {}at {}: remove what does not "
-      "belong to it",
+      "has {} of less than a hundredth of its area apart from the others or inside of them, {}at {}: remove what does "
+      "not belong to it",
       count_text(count, "piece", "pieces"), count > 1 ? "one " : "", place_text(first.box.center(), unit));
 }
 

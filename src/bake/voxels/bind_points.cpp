@@ -12,6 +12,7 @@ namespace
 
 constexpr std::size_t points_per_task = 1024;
 constexpr double farthest_landmark = 20e-3;  // largest distance from the skin [m]
+constexpr double distant_landmark = 5e-3;    // distance from the skin above which it warns [m]
 constexpr double deep = 0.5e-3;              // depth below a surface at which the side of a gap is certain [m]
 
 /// Finds the voxel that moves a point: the one that contains it, or the nearest one within the extrapolation distance.
@@ -218,7 +219,8 @@ BoundMesh bind_mesh(const TriangleMesh& whole, const Region& crop, const LocalFr
   return bound;
 }
 
-void bind_landmarks(const Scene& scene, const LocalFrame& frame, const PointBinder& binder, Model& model)
+void bind_landmarks(const Scene& scene, const LocalFrame& frame, const PointBinder& binder, Model& model,
+                    BakeMonitor& monitor)
 {
   const TriangleTree tree(model.skin);
   for (const SceneLandmark& landmark : scene.landmarks)
@@ -235,6 +237,9 @@ void bind_landmarks(const Scene& scene, const LocalFrame& frame, const PointBind
       throw failure(
           "{}: lies {} from the published skin; at most {} are allowed: check its coordinates and the skin's crop",
           place, length_text(closest.distance, scene.unit), length_text(farthest_landmark, scene.unit));
+    if (!landmark.head && closest.distance > distant_landmark)
+      monitor.warn("{} lies {} from the published skin and was moved to it: check its coordinates", place,
+                   length_text(closest.distance, scene.unit));
     std::int32_t voxel = -1;
     std::array<float, 3> coordinates{};
     const auto corner = corners(model.skin, model.skin.triangles[closest.triangle]);
@@ -270,10 +275,11 @@ namespace
 std::string text_of_body_around(const Scene& scene, const PreparedSurfaces& surfaces, const Vector3d& point)
 {
   for (const Volume& volume : scene.volumes)
-    for (const std::string& name : volume.outside)
-      for (const auto& surface : surfaces)
-        if (volume.tissue && surface->name() == name && surface->tree().winding_number(point) > 0.5)
-          return fmt::format(" and lies inside of surface '{}', which may be misplaced", name);
+    for (const auto* const names : { &volume.outside, &volume.without })
+      for (const std::string& name : *names)
+        for (const auto& surface : surfaces)
+          if (volume.tissue && surface->name() == name && surface->tree().winding_number(point) > 0.5)
+            return fmt::format(" and lies inside of surface '{}', which may be misplaced", name);
   return "";
 }
 
@@ -309,7 +315,7 @@ void bind_surfaces(const Scene& scene, const PreparedSurfaces& surfaces, const L
     model.skin = std::move(bound.mesh);
     model.skin_binding = std::move(bound.binding);
   }
-  bind_landmarks(scene, frame, binder, model);
+  bind_landmarks(scene, frame, binder, model, monitor);
 
   for (const SceneLoad& load : scene.loads)
   {
