@@ -121,7 +121,8 @@ CLI::App* add_command(CLI::App& app, const std::string& name, const std::string&
 {
   CLI::App* command = app.add_subcommand(name, text);
   command->add_option("SCENE_OR_MODEL", options.source.path, "scene (YAML) or baked model (.vtkhdf)")->required();
-  command->add_option("--runs", options.settings.runs, "largest number of simulations that refine the answer (5; 0: none)")
+  command
+      ->add_option("--runs", options.settings.runs, "largest number of simulations that refine the answer (5; 0: none)")
       ->check(CLI::Range(0, 1000));
   command->add_option("--cache", options.source.cache,
                       "folder that keeps baked models and their influence by the content of their scenes");

@@ -211,10 +211,9 @@ TEST_F(Import, SmallPiecesApartAreTold)
   EXPECT_TRUE(load(many).warnings.empty());
   const auto warnings = load(together(body, box({ 0, 0, 90 }, { 3, 3, 3 }))).warnings;
   ASSERT_EQ(warnings.size(), 1u);
-  EXPECT_EQ(
-      warnings[0].find("surface 'body' has 1 piece of less than a hundredth of its area apart from the others or "
-                       "inside of them, at (0, 0, 90) mm"),
-      0u)
+  EXPECT_EQ(warnings[0].find("surface 'body' has 1 piece of less than a hundredth of its area apart from the others or "
+                             "inside of them, at (0, 0, 90) mm"),
+            0u)
       << warnings[0];
 }
 

@@ -17,13 +17,13 @@ namespace frontalis
 /// The state of a face that is published once per frame. Positions are in the face frame [m].
 struct Frame
 {
-  double time = 0;              ///< simulated time since the latest reset, multiplied by Model::time_scaling [s]
-  double wall_time = 0;         ///< wall time since the runner started [s]
+  double time = 0;       ///< simulated time since the latest reset, multiplied by Model::time_scaling [s]
+  double wall_time = 0;  ///< wall time since the runner started [s]
   /// simulated time divided by wall time, or by the time of RunnerSettings::clock, over about the last second
   double real_time_factor = 0;
-  double time_step = 0;         ///< of the solver [s]
-  std::int64_t steps = 0;       ///< solver steps since the latest reset
-  std::uint64_t sequence = 0;   ///< number of the frame
+  double time_step = 0;        ///< of the solver [s]
+  std::int64_t steps = 0;      ///< solver steps since the latest reset
+  std::uint64_t sequence = 0;  ///< number of the frame
   SkinState skin;
   std::vector<float> field;  ///< requested by RunnerSettings::wanted_field, per skin vertex; empty if none
   /// Displacements of the nodes in the local frame [m], while RunnerSettings::wants_displacements; else empty.
@@ -57,8 +57,8 @@ struct RunnerSettings
   Pace pace = Pace::real_time;
   double frame_rate = 0;  ///< frames per second of wall time, 0.1 to 1000; 0: the model's
   std::optional<GuardSettings> guard = GuardSettings{};  ///< empty: the motion is not checked
-  /// The clock [s] that a face at the pace of real time follows instead of the wall clock. It may stand still, go at any
-  /// speed and jump. Called in the runner's thread.
+  /// The clock [s] that a face at the pace of real time follows instead of the wall clock. It may stand still, go at
+  /// any speed and jump. Called in the runner's thread.
   std::function<double()> clock{};
   /// Called once per frame in the runner's thread; returns the field of the skin to compute. If the function is not set
   /// or returns nothing, no field is computed.
