@@ -143,6 +143,7 @@ void find_displaced_sides(const Scene& scene, const PreparedSurfaces& surfaces, 
     for (int axis = 0; axis < 3; ++axis)
     {
       std::vector<double> along;
+      along.reserve(pairs.size());
       for (const Pair& pair : pairs)
         along.push_back(vector(pair)[axis]);
       middle[axis] = median(along);
@@ -155,6 +156,7 @@ void find_displaced_sides(const Scene& scene, const PreparedSurfaces& surfaces, 
   { return pair.left - pair.right + 2 * left.dot(pair.right - middle) * left; };
   const Vector3d usual = median_of(off);
   std::vector<double> distances;
+  distances.reserve(pairs.size());
   for (const Pair& pair : pairs)
     distances.push_back((off(pair) - usual).norm());
   const double limit = std::max(allowed, unusual * median(distances));

@@ -193,8 +193,10 @@ void check_same(const std::string& file, const Json& now)
   const Json before = Json::parse(in, nullptr, false);
   for (const auto& [key, value] : now.items())
     if (const Json found = before.is_object() ? before.value(key, Json()) : Json(); found != value)
-      throw Error(fmt::format("{}: {} is {}; to continue this data set, it must be {} as in this run", file, key,
-                              found.dump(), value.dump()));
+      throw Error(
+          fmt::format("{}: this data set was made with {} {}, this run has {}; to continue it, use the options with "
+                      "which it was made",
+                      file, key, found.dump(), value.dump()));
 }
 
 // Removes a last line that was not written completely. Throws Error if the list already has frames from `first` on.

@@ -40,9 +40,10 @@ std::string request_of(const FitActivationGoal& goal)
     for (const double x : { goal.target[l].x, goal.target[l].y, goal.target[l].z })
     {
       any = any || !std::isnan(x);
-      if (std::isfinite(x) && std::abs(x) > most)
-        throw Error(fmt::format("target of landmark '{}': found {} m; allowed are -{} to {} m (targets are in metres)",
-                                goal.landmark[l], x, most, most));
+      if (std::abs(x) > most)
+        throw Error(fmt::format(
+            "target of landmark '{}': found {} m; allowed are -{} to {} m (targets are in metres; NaN leaves one free)",
+            goal.landmark[l], x, most, most));
     }
   }
   if (!any)
