@@ -326,6 +326,7 @@ Model bake(const Scene& given, BakeReport* report, const BakeProgress& progress)
   monitor.begin("constraints");
   restrict_nodes(scene, surfaces, fibres, frame, model, monitor);
   remove_islands(model, monitor);
+  check_moving_bones(scene, model, monitor);
   attach_nodes(scene, surfaces, frame, model, monitor);
   if (model.rigid.empty() && model.sliding.empty() && model.attached.empty() && model.prescribed.empty())
     monitor.warn("{}: no node is held or slides on a surface, so that the tissue is free to fly away; add constraints",

@@ -169,6 +169,30 @@ void find_displaced_sides(const Scene& scene, const PreparedSurfaces& surfaces, 
 
 }  // namespace
 
+void check_moving_bones(const Scene& scene, const Model& model, BakeMonitor& monitor)
+{
+  constexpr double most = 0.5;  // share of the nodes; in whole faces a mandible has up to 0.13
+  std::set<std::string> moved;
+  for (const auto* poses : { &scene.expressions, &scene.action_units })
+    for (const auto& [name, pose] : *poses)
+      for (const BonePose& bone : pose.bones)
+        moved.insert(bone.bone);
+  std::map<std::int32_t, std::size_t> nodes;
+  for (const RigidNode& node : model.rigid)
+    ++nodes[node.bone];
+  for (const SlidingNode& node : model.sliding)
+    ++nodes[model.constraint_surfaces[node.surface].bone];
+  const auto all = static_cast<double>(model.rigid.size() + model.sliding.size());
+  for (const auto& [bone, count] : nodes)
+    if (bone >= 0 && moved.count(model.bones[bone]) > 0 && static_cast<double>(count) > most * all)
+      monitor.warn(
+          "{}: bone '{}', which expressions move, has {:.0f} % of the nodes that are held or slide, so that most of "
+          "the face "
+          "moves with it: check the surfaces and 'bone' of the constraints, and whether the jaw was parted from the "
+          "skull",
+          scene.file, model.bones[bone], 100 * static_cast<double>(count) / all);
+}
+
 void check_places(const Scene& scene, const PreparedSurfaces& surfaces, const Volumes& volumes, BakeMonitor& monitor)
 {
   std::vector<const PreparedSurface*> bodies;

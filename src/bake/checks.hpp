@@ -47,6 +47,10 @@ void check_holes(const Scene& scene, const PreparedSurfaces& surfaces, const Vol
 /// pairs are. Reports surfaces beside the tissue that no constraint names.
 void check_places(const Scene& scene, const PreparedSurfaces& surfaces, const Volumes& volumes, BakeMonitor& monitor);
 
+/// Warns of a bone that expressions or action units move and to which most held and sliding nodes belong, such as
+/// that of a jaw that was not parted from the skull.
+void check_moving_bones(const Scene& scene, const Model& model, BakeMonitor& monitor);
+
 /// Warns of materials, muscles, layers and gravity that are so far from any tissue, bone or silicone that a unit is
 /// probably missing or wrong: a number without a unit is in SI units, so that 'young: 34' is 34 Pa.
 void check_magnitudes(const Scene& scene, const Model& model, BakeMonitor& monitor);

@@ -88,6 +88,15 @@ TEST(Places, of_centres_and_landmarks_are_checked)
                  "landmark 'corner_left' lies 7 mm from the published skin and was moved to it");
 }
 
+TEST(Places, of_bones_that_carry_the_whole_face_are_told)
+{
+  const std::string still = "rigid: skull", jaw = "expressions: {open: {bones: {jaw: {turn: [0, 10, 0]}}}}\naccuracy:";
+  EXPECT_TRUE(report_of(with("accuracy:", jaw)).warnings.empty());
+  std::string text = with("accuracy:", jaw);
+  text.replace(text.find(still), still.size(), still + ", bone: jaw");
+  expect_warning(text, "bone 'jaw', which expressions move, has 100 % of the nodes that are held or slide");
+}
+
 TEST(Sides, under_other_names_are_told)
 {
   std::string text = scene;

@@ -154,10 +154,9 @@ void remove_islands(Model& model, BakeMonitor& monitor)
   for (std::size_t e = 0; e < keep.size(); ++e)
     keep[e] = stays[component[e]];
   keep_voxels(model, keep);
-  monitor.found(
-      "{} voxels removed: {} islands that nothing holds and {} small parts that are connected to the rest by no face "
-      "of a voxel",
-      voxels, islands, crumbs);
+  monitor.found("{} removed: {} that nothing holds and {} connected to the rest by no face of a voxel",
+                count_text(voxels, "voxel", "voxels"), count_text(islands, "island", "islands"),
+                count_text(crumbs, "small part", "small parts"));
 }
 
 }  // namespace frontalis
