@@ -109,7 +109,7 @@ TEST(Dataset, WhatWasWrittenBeforeAnInterruptStaysValidAndIsContinued)
   std::replace(too_small.begin(), too_small.end(), std::string("64,48"), std::string("0,48"));
   for (const auto& [arguments, reason] :
        { std::pair{ dataset(cut, { "--first", std::to_string(count - 1) }), "--first must be " + next },
-         { dataset(cut, { "--first", next, "--seed", "2" }), std::string("seed is 1") },
+         { dataset(cut, { "--first", next, "--seed", "2" }), std::string("made with seed 1, this run has 2") },
          { dataset(cut, { "--frames", "1" }), "--first must be " + next },
          { too_small, std::string("0 x 48 pixels") } })
   {
