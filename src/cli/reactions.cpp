@@ -1,11 +1,14 @@
 #include "cli/reactions.hpp"
 
+#include "frontalis/error.hpp"
 #include "frontalis/model/body_shape.hpp"
 #include "frontalis/study/plot.hpp"
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace frontalis
 {
@@ -38,6 +41,13 @@ std::string reaction_rows(const Model& model, int frame, double time, const std:
                         force[0], force[1], force[2], moment[0], moment[1], moment[2]);
   }
   return rows;
+}
+
+ReactionPlot::ReactionPlot(std::string path, const Model& model) : path_(std::move(path)), model_(model)
+{
+  const std::vector<BodyShape> shapes = body_shapes(model);
+  if (std::all_of(shapes.begin(), shapes.end(), [](const BodyShape& shape) { return shape.only_shown; }))
+    throw Error("--plot draws the forces on bodies that tissue touches; the model has none");
 }
 
 void ReactionPlot::add(double time, const std::vector<BodyFrame>& bodies)

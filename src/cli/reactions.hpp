@@ -22,8 +22,8 @@ std::string reaction_rows(const Model& model, int frame, double time, const std:
 class ReactionPlot
 {
 public:
-  /// `path` has no extension.
-  ReactionPlot(std::string path, const Model& model) : path_(std::move(path)), model_(model) {}
+  /// `path` has no extension. Throws Error if the model has no bodies that tissue touches.
+  ReactionPlot(std::string path, const Model& model);
   void add(double time, const std::vector<BodyFrame>& bodies);
   /// Writes PATH.png and PATH.svg with the magnitude and the components of the force on each body. Throws Error.
   void write() const;

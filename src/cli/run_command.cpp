@@ -137,7 +137,7 @@ void Run::play()
     if (frame == 0)
       summary.rest = summary.end;
     if (folder)
-      folder->add(time, summary.end, summary.bodies);
+      folder->add(time, summary.end, summary.rest, summary.bodies);
     if (plot)
       plot->add(time, summary.bodies);
     if (movie)
@@ -172,7 +172,7 @@ void Run::settle()
   summary.equilibrium = found;
   summary.complete = !interrupt_requested() || found.reached;
   if (folder)
-    folder->add(time, summary.end, summary.bodies);
+    folder->add(time, summary.end, summary.rest, summary.bodies);
 }
 
 void check_options(const RunOptions& options)
@@ -277,13 +277,13 @@ void simulate(RunOptions& options)
   Run run{ options, *model, std::move(curve), *solver, std::nullopt };
   if (!options.movie.path.empty())
     run.movie.emplace(options.movie, options.frame_rate, *model);
+  if (!options.plot.empty())
+    run.plot.emplace(plot_path(options.plot), *model);
   // It removes frames of earlier runs, which must stay if an option is refused.
   if (!options.frames.empty())
     run.folder.emplace(options.frames, *model, options.vtp);
   run.fine_lines = FineLines::make(model, false);
   RunSummary& summary = run.summary;
-  if (!options.plot.empty())
-    run.plot.emplace(plot_path(options.plot), *model);
   if (options.solver.ledger)
     summary.ledger.emplace();
   summary.backend = solver->description();

@@ -221,7 +221,7 @@ void print_result(const Model& model, const RunSummary& summary)
   if (summary.fine_lines > 0)
     fmt::print("fine lines         {:.1f} ms of processor time per frame\n",
                1e3 * ratio(summary.fine_lines, summary.frames));
-  fmt::print("real-time factor   {:.4f}", ratio(summary.seconds, summary.wall));
+  fmt::print("real-time factor   {:.4g}", ratio(summary.seconds, summary.wall));
   if (model.time_scaling != 1)
     fmt::print(" with time scaling {:g}, which is not real time; {:.4f} without", model.time_scaling,
                ratio(summary.seconds / model.time_scaling, summary.wall));
@@ -294,21 +294,19 @@ FrameFolder::FrameFolder(std::string path, const Model& model, bool vtp)
       path_, R"((skin_[0-9]{4,}\.(ply|vtp)|skin\.pvd|landmarks\.csv|reactions\.csv|run\.json)(\.partial(-[0-9]+)?)?)");
 }
 
-void FrameFolder::add(double time, const SkinState& skin, const std::vector<BodyFrame>& bodies)
+void FrameFolder::add(double time, const SkinState& skin, const SkinState& rest, const std::vector<BodyFrame>& bodies)
 {
-  if (frames_ == 0)
-    first_ = skin;
   write_text(fmt::format("{}/skin_{:04}.ply", path_, frames_), ply_of(skin, model_.skin.triangles, time));
   if (vtp_)
   {
     const std::string name = fmt::format("skin_{:04}.vtp", frames_);
-    write_text(path_ + "/" + name, vtp_of(skin, first_, model_.skin.triangles));
+    write_text(path_ + "/" + name, vtp_of(skin, rest, model_.skin.triangles));
     series_ += fmt::format("<DataSet timestep=\"{:.6f}\" file=\"{}\"/>\n", time, name);
   }
   for (std::size_t l = 0; l < skin.landmarks.size(); ++l)
   {
     const std::array<float, 3>& now = skin.landmarks[l];
-    const std::array<float, 3>& then = first_.landmarks[l];
+    const std::array<float, 3>& then = rest.landmarks[l];
     table_ += fmt::format("{},{:.6f},{},{:.9g},{:.9g},{:.9g},{:.6f},{:.6f},{:.6f}\n", frames_, time,
                           model_.landmarks[l], now[0], now[1], now[2], 1e3 * (now[0] - then[0]),
                           1e3 * (now[1] - then[1]), 1e3 * (now[2] - then[2]));

@@ -54,9 +54,9 @@ public:
   FrameFolder(std::string path, const Model& model, bool vtp);
 
   /// Writes the skin, in the face frame, as binary little-endian PLY: vertices and normals as float, triangles. A VTP
-  /// file also has the displacement from the first frame [m].
-  void add(double time, const SkinState& skin, const std::vector<BodyFrame>& bodies);
-  /// Writes landmarks.csv (position [m] and motion from the first frame [mm], face frame), run.json and, if tissue
+  /// file also has the displacement from `rest` [m].
+  void add(double time, const SkinState& skin, const SkinState& rest, const std::vector<BodyFrame>& bodies);
+  /// Writes landmarks.csv (position [m] and motion from rest [mm], face frame), run.json and, if tissue
   /// may touch bodies, reactions.csv (force [N] and moment [N m], face frame).
   void finish(const std::string& summary);
 

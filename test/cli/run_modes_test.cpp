@@ -206,6 +206,19 @@ TEST_F(RunModes, equilibrium_is_where_a_damped_motion_ends)
   const double settled = json_from(text_of(frames + "/run.json")).at("landmarks").at("tip").at("up_mm"),
                damped = json_from(text_of(other + "/run.json")).at("landmarks").at("tip").at("up_mm");
   EXPECT_NEAR(settled, damped, 0.01 * std::abs(damped));
+  // the table has displacements from rest, though the frame of rest is not written
+  const std::string table = text_of(frames + "/landmarks.csv");
+  EXPECT_NEAR(std::stod(table.substr(table.rfind(',') + 1)), settled, 1e-4 * std::abs(settled));
+}
+
+TEST_F(RunModes, plots_only_forces_that_there_are)
+{
+  const ProgramResult result =
+      run_program({ "run", model, "--activate", "pull=0.5", "--seconds", "0.01", "--plot", folder / "forces.png" });
+  EXPECT_EQ(result.code, 1);
+  EXPECT_NE(result.errors.find("--plot draws the forces on bodies that tissue touches; the model has none"),
+            std::string::npos)
+      << result.errors;
 }
 
 TEST_F(RunModes, equilibrium_that_is_not_reached_is_an_error)

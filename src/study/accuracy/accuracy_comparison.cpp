@@ -16,6 +16,7 @@ namespace
 
 // Below this ratio of error to displacement, incomplete settling and rounding dominate, so that no order is observed.
 constexpr double exactly_represented = 1e-3;
+constexpr double least_motion = 1e-9;  // [m]; with less, errors relative to the motion mean nothing
 
 const AccuracyRow& last_of_front(const AccuracyFindings& findings)
 {
@@ -83,6 +84,8 @@ void estimate_reference_error(const AccuracyPlan& plan, const VariantBench& benc
       findings.reference_error = richardson(edge(2), edge(1), difference(1), findings.order);
   }
   findings.motion = motion_size(level(1)->motion);
+  if (findings.motion < least_motion)
+    throw Error("the skin does not move in this motion; choose another by --expression");
   std::string plain, averaged;
   for (std::size_t back = levels.size() - 1; back > 0; --back)
   {
