@@ -42,13 +42,16 @@ Penetration penetration(const PreparedSurface& of, const PreparedSurface& into)
   return deepest;
 }
 
-/// The bones that move what constraints hold at each surface, or let slide on it; an empty name stands for none.
+/// The bones that move what constraints hold at each surface, let slide on it or push by it; an empty name stands for
+/// none.
 std::map<std::string, std::set<std::string>> bones_at_surfaces(const Scene& scene)
 {
   std::map<std::string, std::set<std::string>> bones;
   for (const SceneConstraint& constraint : scene.constraints)
-    for (const std::string& surface : constraint.surfaces)
-      bones[surface].insert(constraint.bone);
+    // Contact within 0 is that of bodies which are only shown.
+    if (constraint.restricts_nodes() || (constraint.kind == SceneConstraint::Kind::contact && constraint.within != 0))
+      for (const std::string& surface : constraint.surfaces)
+        bones[surface].insert(constraint.bone);
   return bones;
 }
 
@@ -82,13 +85,16 @@ void find_free_bones(const Scene& scene, const std::vector<const PreparedSurface
   const auto bones = bones_at_surfaces(scene);
   for (const PreparedSurface* const body : bodies)
     if (bones.count(body->name()) == 0)
-      monitor.found("surface '{}' bounds the tissue, but no constraint names it: the tissue can move through its place",
-                    body->name());
+      monitor.found(
+          "surface '{}' bounds the tissue, but no constraint names it: the tissue can move through its place, "
+          "unless another surface is in front of it",
+          body->name());
 }
 
 /// Warns of centres of bones that lie far from the surfaces that move with the bone.
 void find_distant_centres(const Scene& scene, const PreparedSurfaces& surfaces, BakeMonitor& monitor)
 {
+  constexpr double farthest = 0.15;  // [m]; arms of robots and hinges of jaws may turn small parts
   for (const auto& [bone, centre] : scene.bone_centres)
   {
     Box box;
@@ -98,7 +104,8 @@ void find_distant_centres(const Scene& scene, const PreparedSurfaces& surfaces, 
           box.extend(named_surface(surfaces, name, scene.file).box());
     if (box.isEmpty())
       continue;
-    if (const double distance = box.exteriorDistance(to_vector(centre)); distance > box.diagonal().norm())
+    if (const double distance = box.exteriorDistance(to_vector(centre));
+        distance > std::max(farthest, box.diagonal().norm()))
       monitor.warn(
           "{}: the centre of bone '{}', {}, lies {} from the surfaces that move with it, which span {}; check its sign "
           "and its length unit",

@@ -2,6 +2,8 @@
 
 #include "bake/messages.hpp"
 
+#include <boost/algorithm/string/case_conv.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -86,12 +88,13 @@ void check_pairs(const Scene& scene, const std::map<std::string, Thing>& things,
 /// Warns of names that look like those of sides but are not NAME_left and NAME_right.
 void find_other_names_of_sides(const Scene& scene, const std::map<std::string, Thing>& things, BakeMonitor& monitor)
 {
+  std::map<std::string, std::string> given;  // by the names in lower case
+  for (const auto& [name, thing] : things)
+    given.emplace(boost::algorithm::to_lower_copy(name), name);
   constexpr std::array<std::array<const char*, 2>, 5> sides{
     { { "left", "right" }, { "links", "rechts" }, { "gauche", "droite" }, { "izquierda", "derecha" }, { "l", "r" } }
   };
-  const auto named = [&](const std::string& left, const std::string& right)
-  { return things.count(left) > 0 && things.count(right) > 0; };
-  for (const auto& [name, thing] : things)
+  for (const auto& [name, as_given] : given)
     for (const auto& [left, right] : sides)
       for (const bool first : { false, true })
         for (const char separator : { '_', '-', '.', ' ' })
@@ -102,11 +105,11 @@ void find_other_names_of_sides(const Scene& scene, const std::map<std::string, T
             continue;
           const std::string rest = first ? name.substr(part.size()) : name.substr(0, at);
           const std::string other = first ? std::string(right) + separator + rest : rest + separator + right;
-          if (named(name, other))
+          if (given.count(other) > 0)
             return monitor.warn(
                 "{}: '{}' and '{}' look like two sides, but only NAME_left and NAME_right are taken for such: rename "
-                "them, here to '{}_left' and '{}_right', so that exchanged sides are found and expressions have halves",
-                scene.file, name, other, rest, rest);
+                "them, here to '{}_left' and '{}_right', so that exchanged and displaced sides are found",
+                scene.file, as_given, given.at(other), rest, rest);
         }
 }
 

@@ -275,11 +275,11 @@ void simulate(RunOptions& options)
   const std::unique_ptr<Solver> solver = make_solver(model, options.solver);
   switch_off(*solver, off);
   Run run{ options, *model, std::move(curve), *solver, std::nullopt };
-  if (!options.movie.path.empty())
-    run.movie.emplace(options.movie, options.frame_rate, *model);
   if (!options.plot.empty())
     run.plot.emplace(plot_path(options.plot), *model);
-  // It removes frames of earlier runs, which must stay if an option is refused.
+  // They remove frames of earlier runs, which must stay if an option is refused.
+  if (!options.movie.path.empty())
+    run.movie.emplace(options.movie, options.frame_rate, *model);
   if (!options.frames.empty())
     run.folder.emplace(options.frames, *model, options.vtp);
   run.fine_lines = FineLines::make(model, false);

@@ -83,7 +83,7 @@ std::string ply_of(const SkinState& skin, const std::vector<std::array<std::int3
 }
 
 // Returns a surface in VTK's XML format. The arrays of numbers come after the XML, each after its size in bytes.
-std::string vtp_of(const SkinState& skin, const SkinState& first,
+std::string vtp_of(const SkinState& skin, const SkinState& rest,
                    const std::vector<std::array<std::int32_t, 3>>& triangles)
 {
   std::string text = fmt::format(
@@ -102,7 +102,7 @@ std::string vtp_of(const SkinState& skin, const SkinState& first,
   std::vector<std::array<float, 3>> displacements(skin.vertices);
   for (std::size_t v = 0; v < displacements.size(); ++v)
     for (std::size_t axis = 0; axis < 3; ++axis)
-      displacements[v][axis] -= first.vertices[v][axis];
+      displacements[v][axis] -= rest.vertices[v][axis];
   std::vector<std::int32_t> ends(triangles.size());
   for (std::size_t t = 0; t < ends.size(); ++t)
     ends[t] = static_cast<std::int32_t>(3 * (t + 1));
@@ -223,7 +223,7 @@ void print_result(const Model& model, const RunSummary& summary)
                1e3 * ratio(summary.fine_lines, summary.frames));
   fmt::print("real-time factor   {:.4g}", ratio(summary.seconds, summary.wall));
   if (model.time_scaling != 1)
-    fmt::print(" with time scaling {:g}, which is not real time; {:.4f} without", model.time_scaling,
+    fmt::print(" with time scaling {:g}, which is not real time; {:.4g} without", model.time_scaling,
                ratio(summary.seconds / model.time_scaling, summary.wall));
   fmt::print("\nelement updates    {:.2f} million per second\n", updates_per_second(model, summary.profile) * 1e-6);
   if (!summary.complete)

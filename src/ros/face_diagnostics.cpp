@@ -50,8 +50,9 @@ void FaceNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status)
   const bool lacks_clock = ros::Time::isSimTime() && ros::Time::now().isZero();
   if (lacks_clock && moves_by_itself && has_frame_)
     ROS_WARN_STREAM_ONCE(
-        name_ << ": /use_sim_time is true, but nobody publishes /clock: the face stands still, and all "
-                 "messages have the time 0, which rviz, tf2 and cameras do not show");
+        name_
+        << ": /use_sim_time is true, but nobody publishes /clock: a face at the pace real_time stands still, and all "
+           "messages have the time 0, which rviz, tf2 and cameras do not show");
   if (frame_.failed)
     status.summary(DiagnosticStatus::ERROR, frame_.failure);
   else if (!frame_finite_)

@@ -82,7 +82,7 @@ class Replay:
         names = ["%s/%s" % (self.face, topic) for topic in INPUTS]
         # rosbag record stores the names of topics as they were given, with or without the slash in front.
         stored = [topic for topic in bag.get_type_and_topic_info().topics if "/" + topic.strip("/") in names]
-        commands = [(stamp, "/" + topic.strip("/"), message) for topic, message, stamp in bag.read_messages(stored) if stored]
+        commands = [(stamp, "/" + topic.strip("/"), message) for topic, message, stamp in (bag.read_messages(stored) if stored else ())]
         if not commands:
             sys.exit("replay_bag: the bag has no message on any of " + " ".join(names))
         start = commands[0][0]

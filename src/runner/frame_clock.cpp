@@ -26,7 +26,8 @@ double FrameClock::behind(double now, double simulated, double limit)
 
 double FrameClock::record_frame(double now, double simulated)
 {
-  if (now < frames_.back().first)
+  constexpr double longest_pause = 60;  // [s]; what is longer is a jump, as when /clock begins
+  if (now < frames_.back().first || now > frames_.back().first + longest_pause)
     frames_.clear();
   else if (now == frames_.back().first && frames_.size() > 1)
     frames_.pop_back();

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <chrono>
 #include <deque>
 #include <utility>
 
@@ -19,7 +18,8 @@ public:
   /// the clock was set back, need not wait for it.
   double behind(double now, double simulated, double limit);
   /// Records a frame and returns the real-time factor: simulated seconds divided by those of the clock since the latest
-  /// recorded frame that is older than a second, or since the restart. While the clock stands still the factor stays.
+  /// recorded frame that is older than a second, or since the restart or a jump of the clock. If the clock stands
+  /// still, what is simulated counts for the time before.
   double record_frame(double now, double simulated);
 
 private:

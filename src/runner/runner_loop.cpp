@@ -188,7 +188,7 @@ void Runner::Implementation::run_frame()
   // quarter of its length; frames that were missed completely are skipped.
   deadline = std::max(deadline + length, Clock::now() + length / 4);
   deadline = std::min(deadline, Clock::now() + length);
-  const double most_behind = settings.clock ? coarsest_clock : 2 * period();
+  const double most_behind = std::max(settings.clock ? coarsest_clock : 0, 2 * period());
   const double end =
       time() + (settings.pace == Pace::fastest ? 1e9 : clock.behind(now(), time(), most_behind) + period());
   const auto interrupted = [this] { return stop || paused || reset_wanted() || step_request != nullptr; };

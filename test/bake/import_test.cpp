@@ -205,6 +205,7 @@ TEST_F(Import, SmallPiecesApartAreTold)
   const TriangleMesh body = box({ 0, 0, 0 }, { 40, 40, 40 });
   EXPECT_TRUE(load(together(body, box({ 0, 0, 24 }, { 3, 3, 3 }))).warnings.empty());
   EXPECT_TRUE(load(together(body, box({ 0, 0, 90 }, { 20, 20, 20 }))).warnings.empty());
+  EXPECT_EQ(load(together(body, box({ 0, 0, 0 }, { 3, 3, 3 }))).warnings.size(), 1u) << "it is enclosed twice";
   TriangleMesh many = box({ 0, 0, 0 }, { 1, 1, 1 });
   for (int i = 1; i < 150; ++i)
     many = together(many, box({ 3.0 * i, 0, 0 }, { 1, 1, 1 }));

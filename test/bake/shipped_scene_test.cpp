@@ -33,7 +33,8 @@ double volume_in_report(const BakeReport& report, const std::string& muscle, con
 void expect_one_piece(const BakeReport& report)
 {
   for (const std::string& finding : report.findings)
-    EXPECT_EQ(finding.find("voxels removed"), std::string::npos) << finding;
+    EXPECT_EQ(finding.find(" removed: "), std::string::npos) << finding;
+  EXPECT_TRUE(report.warnings.empty()) << testing::PrintToString(report.warnings);
 }
 
 void expect_whole_muscles(const Model& model, const BakeReport& report)

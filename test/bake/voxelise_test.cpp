@@ -236,6 +236,7 @@ TEST(Voxelise, WarnsOfMusclesMostlyClippedAndOfSurfacesFarFromTheTissue)
   ASSERT_EQ(report.warnings.size(), 4u);
   EXPECT_NE(report.warnings[0].find("density is 1.1 kg/m3, expected 100 to 20000"), std::string::npos);
   EXPECT_NE(report.warnings[1].find("muscle 'a': cross_section is 60 m2"), std::string::npos);
+  EXPECT_NE((report.warnings[2] + report.warnings[3]).find("of its cross-section of 6e+07 mm2"), std::string::npos);
 }
 
 TEST(Voxelise, WarnsOfSidesThatDifferOrLieBeforeEachOtherAndOfTissueLargerThanAHead)

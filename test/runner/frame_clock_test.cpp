@@ -58,6 +58,11 @@ TEST(FrameClock, MayStandStillAndJump)
   EXPECT_NEAR(clock.behind(20.3, 0.6, 0.2), 0.1, 1e-6);
   clock.record_frame(20, 0.6);
   EXPECT_NEAR(clock.record_frame(20.5, 0.7), 0.2, 1e-6);
+  // a clock that begins after the face
+  clock.restart(0, 0);
+  clock.record_frame(0, 0.03);
+  EXPECT_EQ(clock.record_frame(1.7e9, 0.06), 0);
+  EXPECT_NEAR(clock.record_frame(1.7e9 + 0.5, 0.56), 1, 1e-6);
 }
 
 }  // namespace

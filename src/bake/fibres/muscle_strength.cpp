@@ -36,7 +36,11 @@ void scale_strength(const Scene& scene, const std::vector<MuscleFibres>& fibres,
     force.given = scene.muscles[m].cross_section;
     if (force.given > 0 && force.cross_section > 0)
       muscle.stress_reference *= force.given / force.cross_section;
-    if (force.cross_section < thinnest * force.given)
+    if (force.given > 0 && !(force.cross_section > 0))
+      monitor.warn(
+          "{} has no voxel in the model, so that it does not pull: check the thickness and place of its surface",
+          place_in_scene(scene, "muscle", scene.muscles[m]));
+    else if (force.cross_section < thinnest * force.given)
       monitor.warn(
           "{} has {:.2g} mm2 of its cross-section of {:.3g} mm2 in the model, so that its stress is {:.0f} times its "
           "'stress_reference': check the thickness of its surface, and how much of it lies in the tissue",

@@ -295,7 +295,7 @@ std::string stray_pieces(const TriangleMesh& mesh, const std::vector<std::int32_
       return true;
     if (!tree)
       tree.emplace(mesh);
-    return tree->winding_number(of.box.center()) > enclosed_again;
+    return std::abs(tree->winding_number(of.box.center())) > enclosed_again;  // the mesh may be inside-out
   };
   const auto count = static_cast<std::size_t>(std::count_if(pieces.begin(), pieces.end(), strays));
   if (count == 0)
