@@ -48,8 +48,8 @@ std::map<std::string, std::set<std::string>> bones_at_surfaces(const Scene& scen
 {
   std::map<std::string, std::set<std::string>> bones;
   for (const SceneConstraint& constraint : scene.constraints)
-    // Contact within 0 is that of bodies which are only shown.
-    if (constraint.restricts_nodes() || (constraint.kind == SceneConstraint::Kind::contact && constraint.within != 0))
+    // Bodies that are only shown have a `within` of 0.
+    if (constraint.restricts_nodes() || constraint.within != 0)
       for (const std::string& surface : constraint.surfaces)
         bones[surface].insert(constraint.bone);
   return bones;

@@ -108,8 +108,9 @@ class Robot(unittest.TestCase):
             arm = LIP_FROM_HINGE[2] * lip.force.x - LIP_FROM_HINGE[0] * lip.force.z
             return -(jaw.torque.y + lip.torque.y + arm)
 
+        # the skin closes the jaw; the first wrenches may be those of rest
+        self.step_until(lambda: self.joints["jaw_open"][1] > 0.001, "an effort against the skin")
         self.wait_for_effort("jaw_open", torque)
-        self.assertGreater(self.joints["jaw_open"][1], 0.001)  # the skin closes the jaw
 
     def test_an_expression_that_could_move_nothing_is_refused(self):
         self.face.express("smile")
