@@ -11,13 +11,6 @@ namespace frontalis
 namespace
 {
 
-double median(std::vector<double> values)
-{
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// How far a surface reaches into another: its vertex that is deepest in the other.
 struct Penetration
 {
@@ -71,9 +64,8 @@ void find_overlapping_bones(const Scene& scene, const std::vector<const Prepared
       const Penetration& deepest = there.depth > back.depth ? there : back;
       if (deepest.depth > allowed)
         monitor.warn(
-            "surfaces '{}' and '{}', which move with different bones, overlap by {} at {}: one of them is misplaced, "
-            "or "
-            "they were not parted; check both",
+            "surfaces '{}' and '{}', which move with different bones, overlap by {} at {}: one of them is "
+            "misplaced, or they were not parted; check both",
             bodies[a]->name(), bodies[b]->name(), length_text(deepest.depth, scene.unit),
             place_text(deepest.place, scene.unit));
     }
@@ -194,9 +186,8 @@ void check_moving_bones(const Scene& scene, const Model& model, BakeMonitor& mon
     if (bone >= 0 && moved.count(model.bones[bone]) > 0 && static_cast<double>(count) > most * all)
       monitor.warn(
           "{}: bone '{}', which expressions move, has {:.0f} % of the nodes that are held or slide, so that most of "
-          "the face "
-          "moves with it: check the surfaces and 'bone' of the constraints, and whether the jaw was parted from the "
-          "skull",
+          "the face moves with it: check the surfaces and 'bone' of the constraints, and whether the jaw was parted "
+          "from the skull",
           scene.file, model.bones[bone], 100 * static_cast<double>(count) / all);
 }
 

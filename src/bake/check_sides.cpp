@@ -26,11 +26,7 @@ double middle_of_pairs(const std::map<std::string, Thing>& things, const Vector3
   for (const auto& [name, thing] : things)
     if (const auto other = counterpart(things, name); other != things.end())
       middles.push_back(0.5 * left.dot(thing.box.center() + other->second.box.center()));
-  if (middles.empty())
-    return 0;
-  const auto median = middles.begin() + static_cast<std::ptrdiff_t>(middles.size() / 2);
-  std::nth_element(middles.begin(), median, middles.end());
-  return *median;
+  return middles.empty() ? 0 : median(middles);
 }
 
 /// Examines things by their names; those without a counterpart are ignored.

@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace frontalis
 {
@@ -20,6 +21,14 @@ auto counterpart(const std::map<std::string, Thing>& things, const std::string& 
   const std::string left = "_left";
   const std::size_t end = name.size() - std::min(name.size(), left.size());
   return name.substr(end) == left ? things.find(name.substr(0, end) + "_right") : things.end();
+}
+
+/// The middle of the values, of which there must be one at least.
+inline double median(std::vector<double> values)
+{
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
 }
 
 /// The plane between the left and the right half of the face: points p with left.dot(p) == offset.

@@ -36,9 +36,10 @@ def moments(bag, options):
     unheard = set()  # joints without a message since the landmarks of `pending`
     moved = start = due = names_of = pending = confirmed = None
     # rosbag record stores the names of topics as they were given, with or without the slash in front.
-    topics = [topic for topic in bag.get_type_and_topic_info().topics if full(topic) in (places, names, joint_topic)]
-    if options.still and joint_topic not in map(full, topics):
-        fail("%s: has no messages on %s, but on %s" % (options.bag, joint_topic, ", ".join(bag.get_type_and_topic_info().topics)))
+    stored = bag.get_type_and_topic_info().topics
+    if options.still and joint_topic not in map(full, stored):
+        fail("%s: has no messages on %s, but on %s" % (options.bag, joint_topic, ", ".join(stored)))
+    topics = [topic for topic in stored if full(topic) in (places, names, joint_topic)]
     for topic, message, stamp in bag.read_messages(topics):
         topic, now = full(topic), stamp.to_sec()
         if topic == names:
