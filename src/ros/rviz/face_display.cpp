@@ -6,6 +6,9 @@
 #include <rviz/display_context.h>
 #include <rviz/frame_manager.h>
 
+#include <QCoreApplication>
+#include <QEvent>
+
 namespace frontalis
 {
 
@@ -21,6 +24,8 @@ FaceDisplay::~FaceDisplay() = default;
 void FaceDisplay::reset()
 {
   MFDClass::reset();  // forgets all that was said in the status
+  // clouds of the former topic wait in Qt's queue
+  QCoreApplication::removePostedEvents(this, QEvent::MetaCall);
   cloud_.reset();
   bodies_drawn_ = -1;
   hide_skin(rviz::StatusProperty::Warn, "no vertices have come");
