@@ -51,75 +51,6 @@ std::vector<std::pair<std::string, double>> energies_of(const EnergyLedger& ledg
   return energies;
 }
 
-static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "the bytes of numbers are written as they are in memory");
-
-template <class T>
-void append(std::string& bytes, const T& numbers)
-{
-  bytes.append(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof numbers[0]);
-}
-
-std::string ply_of(const SkinState& skin, const std::vector<std::array<std::int32_t, 3>>& triangles, double time)
-{
-  std::string bytes = fmt::format(
-      "ply\nformat binary_little_endian 1.0\ncomment face frame, metres, time {:.6f} s\nelement vertex {}\n"
-      "property float x\nproperty float y\nproperty float z\nproperty float nx\nproperty float ny\nproperty float nz\n"
-      "{}element face {}\nproperty list uchar int vertex_indices\nend_header\n",
-      time, skin.vertices.size(), skin.line_height.empty() ? "" : "property float line_height\n", triangles.size());
-  bytes.reserve(bytes.size() + 24 * skin.vertices.size() + 13 * triangles.size());
-  for (std::size_t v = 0; v < skin.vertices.size(); ++v)
-  {
-    append(bytes, skin.vertices[v]);
-    append(bytes, skin.normals[v]);
-    if (!skin.line_height.empty())
-      append(bytes, std::array<float, 1>{ { skin.line_height[v] } });
-  }
-  for (const std::array<std::int32_t, 3>& triangle : triangles)
-  {
-    bytes += '\3';
-    append(bytes, triangle);
-  }
-  return bytes;
-}
-
-// Returns a surface in VTK's XML format. The arrays of numbers come after the XML, each after its size in bytes.
-std::string vtp_of(const SkinState& skin, const SkinState& rest,
-                   const std::vector<std::array<std::int32_t, 3>>& triangles)
-{
-  std::string text = fmt::format(
-      "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
-      "header_type=\"UInt64\">\n<PolyData><Piece NumberOfPoints=\"{}\" NumberOfPolys=\"{}\">\n",
-      skin.vertices.size(), triangles.size());
-  std::string bytes;
-  const auto add = [&](const char* type, const char* name, int components, const auto& numbers)
-  {
-    text += fmt::format(
-        "<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"appended\" offset=\"{}\"/>\n", type,
-        name, components, bytes.size());
-    append(bytes, std::array<std::uint64_t, 1>{ { numbers.size() * sizeof numbers[0] } });
-    append(bytes, numbers);
-  };
-  std::vector<std::array<float, 3>> displacements(skin.vertices);
-  for (std::size_t v = 0; v < displacements.size(); ++v)
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      displacements[v][axis] -= rest.vertices[v][axis];
-  std::vector<std::int32_t> ends(triangles.size());
-  for (std::size_t t = 0; t < ends.size(); ++t)
-    ends[t] = static_cast<std::int32_t>(3 * (t + 1));
-  text += "<PointData Normals=\"normals\" Vectors=\"displacement\">\n";
-  add("Float32", "normals", 3, skin.normals);
-  add("Float32", "displacement", 3, displacements);
-  if (!skin.line_height.empty())
-    add("Float32", "line_height", 1, skin.line_height);
-  text += "</PointData>\n<Points>\n";
-  add("Float32", "points", 3, skin.vertices);
-  text += "</Points>\n<Polys>\n";
-  add("Int32", "connectivity", 1, triangles);
-  add("Int32", "offsets", 1, ends);
-  return text + "</Polys>\n</Piece></PolyData>\n<AppendedData encoding=\"raw\">_" + bytes +
-         "</AppendedData>\n</VTKFile>\n";
-}
-
 void print_wrinkles(const Wrinkles& wrinkles)
 {
   if (wrinkles.furrows.empty())
@@ -281,49 +212,6 @@ std::string json_of(const Model& model, const RunSummary& summary)
         { "real_time_factor", ratio(summary.seconds, summary.wall) },
         { "element_updates_per_s", updates_per_second(model, summary.profile) } });
   return json_text(json);
-}
-
-FrameFolder::FrameFolder(std::string path, const Model& model, bool vtp)
-    : path_(std::move(path)),
-      model_(model),
-      vtp_(vtp),
-      table_("frame,time_s,landmark,x_m,y_m,z_m,forward_mm,left_mm,up_mm\n")
-{
-  make_folder(path_);
-  remove_files(
-      path_, R"((skin_[0-9]{4,}\.(ply|vtp)|skin\.pvd|landmarks\.csv|reactions\.csv|run\.json)(\.partial(-[0-9]+)?)?)");
-}
-
-void FrameFolder::add(double time, const SkinState& skin, const SkinState& rest, const std::vector<BodyFrame>& bodies)
-{
-  write_text(fmt::format("{}/skin_{:04}.ply", path_, frames_), ply_of(skin, model_.skin.triangles, time));
-  if (vtp_)
-  {
-    const std::string name = fmt::format("skin_{:04}.vtp", frames_);
-    write_text(path_ + "/" + name, vtp_of(skin, rest, model_.skin.triangles));
-    series_ += fmt::format("<DataSet timestep=\"{:.6f}\" file=\"{}\"/>\n", time, name);
-  }
-  for (std::size_t l = 0; l < skin.landmarks.size(); ++l)
-  {
-    const std::array<float, 3>& now = skin.landmarks[l];
-    const std::array<float, 3>& then = rest.landmarks[l];
-    table_ += fmt::format("{},{:.6f},{},{:.9g},{:.9g},{:.9g},{:.6f},{:.6f},{:.6f}\n", frames_, time,
-                          model_.landmarks[l], now[0], now[1], now[2], 1e3 * (now[0] - then[0]),
-                          1e3 * (now[1] - then[1]), 1e3 * (now[2] - then[2]));
-  }
-  reactions_ += reaction_rows(model_, frames_, time, bodies);
-  ++frames_;
-}
-
-void FrameFolder::finish(const std::string& summary)
-{
-  write_text(path_ + "/landmarks.csv", table_);
-  if (!reactions_.empty())
-    write_text(path_ + "/reactions.csv", reaction_heading + reactions_);
-  if (vtp_)
-    write_text(path_ + "/skin.pvd", "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\">\n<Collection>\n" + series_ +
-                                        "</Collection>\n</VTKFile>\n");
-  write_text(path_ + "/run.json", summary);
 }
 
 }  // namespace frontalis

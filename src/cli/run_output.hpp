@@ -44,29 +44,4 @@ void print_result(const Model& model, const RunSummary& summary);
 /// The result as JSON.
 std::string json_of(const Model& model, const RunSummary& summary);
 
-/// A folder of frames: skin_0000.ply, skin_0001.ply, ..., landmarks.csv and run.json. With `vtp` also skin_0000.vtp,
-/// ... and skin.pvd, which lists these files with their times for ParaView. Every file is written completely or not at
-/// all.
-class FrameFolder
-{
-public:
-  /// Makes the folder if it is missing and removes the files of an earlier run from it. Throws Error.
-  FrameFolder(std::string path, const Model& model, bool vtp);
-
-  /// Writes the skin, in the face frame, as binary little-endian PLY: vertices and normals as float, triangles. A VTP
-  /// file also has the displacement from `rest` [m].
-  void add(double time, const SkinState& skin, const SkinState& rest, const std::vector<BodyFrame>& bodies);
-  /// Writes landmarks.csv (position [m] and motion from rest [mm], face frame), run.json and, if tissue
-  /// may touch bodies, reactions.csv (force [N] and moment [N m], face frame).
-  void finish(const std::string& summary);
-
-private:
-  std::string path_;
-  const Model& model_;
-  bool vtp_;
-  int frames_ = 0;
-  SkinState first_;
-  std::string table_, reactions_, series_;
-};
-
 }  // namespace frontalis

@@ -1,5 +1,7 @@
 #include "model/model_layout.hpp"
 
+#include "frontalis/model/main_parts.hpp"
+
 #include <algorithm>
 #include <array>
 #include <string>
@@ -39,32 +41,23 @@ void write_geometry(Hdf5File& file, const Model& model)
   file.write("/VTKHDF/Types", std::vector<std::uint8_t>(model.voxels.size(), vtk_voxel));
 }
 
-// Index of the largest positive value among the entries [begin, end); -1 if no value is positive.
-std::int32_t largest(const std::vector<float>& values, std::int32_t begin, std::int32_t end)
-{
-  const auto found = std::max_element(values.begin() + begin, values.begin() + end);
-  return begin<end&& * found> 0 ? static_cast<std::int32_t>(found - values.begin()) : -1;
-}
-
 void write_cell_data(Hdf5File& file, const Model& model)
 {
   const std::size_t voxels = model.voxels.size();
-  std::vector<std::int32_t> material(voxels, -1), muscle(voxels, -1);
+  const MainParts parts(model);
+  std::vector<std::int32_t> muscle(voxels, -1);
   std::vector<std::array<float, 3>> fibre(voxels, { { 0, 0, 0 } });
   std::vector<float> muscle_weight(voxels, 0);
   for (std::size_t e = 0; e < voxels; ++e)
   {
-    const auto m = largest(model.mixture_proportion, model.mixture_begin[e], model.mixture_begin[e + 1]);
-    if (m >= 0)
-      material[e] = model.mixture_material[m];
-    const auto f = largest(model.fibre_weight, model.fibre_begin[e], model.fibre_begin[e + 1]);
+    const auto f = parts.fibres[e];
     if (f < 0)
       continue;
     muscle_weight[e] = model.fibre_weight[f];
     muscle[e] = model.fibre_muscle[f];
     fibre[e] = model.fibre_direction[f];
   }
-  file.write("/VTKHDF/CellData/material", material);
+  file.write("/VTKHDF/CellData/material", parts.material);
   file.write("/VTKHDF/CellData/fill", model.fill);
   file.write("/VTKHDF/CellData/muscle", muscle);
   file.write("/VTKHDF/CellData/muscle_weight", muscle_weight);

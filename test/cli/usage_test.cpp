@@ -50,6 +50,7 @@ TEST(Usage, wrong_options_end_with_2_and_one_message)
     { "run", scene, "--activate", "strand=0.1,strand=0.2" },
     { "run", scene, "--activate", "=0.1" },
     { "run", scene, "--vtp" },
+    { "run", scene, "--vtu" },
     { "fit", scene },
     { "rest", scene, "-o", "rest.vtkhdf" },
     { "rest", scene, "-o", "rest.vtkhdf", "--creases", "smile" },

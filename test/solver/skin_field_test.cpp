@@ -1,9 +1,11 @@
-// Strain and stress of the skin: they agree with known values and are computed only on request.
+// Strain and stress of the skin and inside the tissue: they agree with known values, and those of the skin are computed
+// only on request.
 
 #include "backends.hpp"
 #include "block_model.hpp"
 #include "frontalis/error.hpp"
 #include "frontalis/model/effects.hpp"
+#include "frontalis/solver/tissue_state.hpp"
 
 #include <cmath>
 
@@ -84,6 +86,72 @@ TEST_P(SkinFields, have_the_stress_of_fibres_that_pull)
   solver->switch_effect(Effect::contraction, false);
   solver->skin_field(SkinField::stress, field);
   for (const float stress : field)
+    EXPECT_NEAR(stress, 0, 1e-3);
+}
+
+// The block's z axis is the face's x axis.
+TEST_P(SkinFields, have_a_tissue_below_them_whose_state_is_in_the_face_frame)
+{
+  Model model = block_with_skin();
+  Muscle muscle;
+  muscle.name = "pull";
+  muscle.stress_reference = 10e3;
+  test::add_muscle(model, { { 0, 0, 1 } }, muscle);
+  model.to_face.rotation = { { 0, 0, 1, 1, 0, 0, 0, 1, 0 } };
+  model.to_face.translation = { { 0.1, 0, 0 } };
+  const auto solver = this->solver(model);
+  const double stretch = 1.2;
+  solver->set_displacements(stretched(model, stretch));
+  TissueReader reader(model);
+  TissueState state;
+  reader.read(*solver, state);
+  ASSERT_EQ(state.place.size(), model.nodes.size());
+  for (std::size_t n = 0; n < state.place.size(); ++n)
+  {
+    const auto rest = test::rest(model, n);
+    EXPECT_NEAR(state.place[n][0], 0.1 + stretch * rest[2], 1e-7);
+    EXPECT_NEAR(state.place[n][1], rest[0], 1e-7);
+    EXPECT_NEAR(state.displacement[n][0], (stretch - 1) * rest[2], 1e-7);
+    EXPECT_NEAR(state.displacement[n][1], 0, 1e-9);
+  }
+  // As for the skin.
+  const double difference = test::shear_modulus({}) * std::pow(stretch, -5.0 / 3) * (stretch * stretch - 1);
+  ASSERT_EQ(state.stress.size(), model.voxels.size());
+  for (std::size_t e = 0; e < state.stress.size(); ++e)
+  {
+    const auto& [xx, yy, zz, xy, yz, xz] = state.stress[e];
+    EXPECT_NEAR(xx - yy, difference, 1e-3 * difference);
+    EXPECT_NEAR(yy, zz, 1e-3 * difference);
+    EXPECT_NEAR(std::abs(xy) + std::abs(yz) + std::abs(xz), 0, 1e-3 * difference);
+    EXPECT_NEAR(state.von_mises[e], difference, 1e-3 * difference);
+    EXPECT_NEAR(state.strain[e][0], 0.5 * (stretch * stretch - 1), 1e-5);
+    EXPECT_NEAR(state.strain[e][1], 0, 1e-6);
+    EXPECT_NEAR(state.volume_ratio[e], stretch, 1e-5);
+    EXPECT_NEAR(state.fibre_stretch[e], stretch, 1e-5);
+  }
+}
+
+TEST_P(SkinFields, show_the_pull_of_fibres_inside_the_tissue)
+{
+  Model model = block_with_skin();
+  Muscle muscle;
+  muscle.name = "pull";
+  muscle.stress_reference = 10e3;
+  test::add_muscle(model, { { 0, 0, 1 } }, muscle);
+  const auto solver = this->solver(model);
+  Controls controls = solver->controls();
+  controls.activation[0] = 1;
+  solver->advance(0, controls);
+  solver->advance(solver->time_step(), controls);
+  solver->set_displacements(stretched(model, 1));
+  TissueReader reader(model);
+  TissueState state;
+  reader.read(*solver, state);
+  for (const auto& stress : state.stress)
+    EXPECT_NEAR(stress[2] - stress[0], 10e3, 10);
+  solver->switch_effect(Effect::contraction, false);
+  reader.read(*solver, state);
+  for (const float stress : state.von_mises)
     EXPECT_NEAR(stress, 0, 1e-3);
 }
 

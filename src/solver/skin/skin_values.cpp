@@ -1,49 +1,23 @@
 #include "solver/skin/skin_values.hpp"
 
 #include "frontalis/error.hpp"
-#include "frontalis/physics/isochoric.hpp"
 #include "frontalis/physics/symmetric_eigen.hpp"
 #include "frontalis/physics/trilinear.hpp"
-#include "frontalis/physics/voxel_element.hpp"
 #include "frontalis/solver/solver.hpp"
-#include "solver/model_voxel.hpp"
+#include "solver/voxel_centre.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace frontalis
 {
 namespace
 {
 
-using physics::Kinematics;
-using physics::Matrix3;
-
-// Largest eigenvalue of the Green-Lagrange strain E = (F^T F - 1) / 2.
-double principal_strain(const Kinematics<double>& k)
+// Largest eigenvalue of the Green-Lagrange strain.
+double principal_strain(const physics::Kinematics<double>& k)
 {
-  Matrix3<double> E;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j)
-    {
-      E.a[i][j] = i == j ? -0.5 : 0;
-      for (int l = 0; l < 3; ++l)
-        E.a[i][j] += 0.5 * k.F.a[l][i] * k.F.a[l][j];
-    }
-  const auto eigen = physics::symmetric_eigen(E);
+  const auto eigen = physics::symmetric_eigen(green_lagrange_strain(k));
   return *std::max_element(eigen.value, eigen.value + 3);
-}
-
-// Von Mises stress of the Cauchy stress P F^T / J, whose divisor has a lower limit.
-double von_mises(const Matrix3<double>& P, const Kinematics<double>& k)
-{
-  double s[3][3] = {};
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j)
-      for (int l = 0; l < 3; ++l)
-        s[i][j] += P.a[i][l] * k.F.a[j][l] / std::max(k.J, physics::continuation_jacobian);
-  const double a = s[0][0] - s[1][1], b = s[1][1] - s[2][2], c = s[2][2] - s[0][0];
-  return std::sqrt(0.5 * (a * a + b * b + c * c) + 3 * (s[0][1] * s[0][1] + s[1][2] * s[1][2] + s[2][0] * s[2][0]));
 }
 
 }  // namespace
@@ -87,8 +61,6 @@ SkinValues::SkinValues(const Model& model, const Discretisation& discretisation)
 void SkinValues::compute(SkinField field, const std::vector<std::array<double, 3>>& u,
                          const std::vector<float>& activation, EffectSet running, std::vector<float>& out)
 {
-  const auto& h = model_.spacing;
-  const double scale[3] = { 0.25 / h[0], 0.25 / h[1], 0.25 / h[2] };
   sum_.assign(nodes_.size(), 0);
   weight_.assign(nodes_.size(), 0);
   VoxelProperties voxel;
@@ -96,25 +68,12 @@ void SkinValues::compute(SkinField field, const std::vector<std::array<double, 3
   {
     const auto e = static_cast<std::size_t>(voxels_[v]);
     discretisation_.voxel(e, voxel);
-    double mode[3][8];
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      for (int b = 0; b < 8; ++b)
-        mode[axis][b] = u[model_.voxel_nodes[e][b]][axis];
-      physics::walsh_hadamard(mode[axis]);
-      physics::to_tissue_centre(voxel.centre, mode[axis]);
-    }
-    const auto k = physics::kinematics(mode[0], mode[1], mode[2], scale);
+    const auto k = deformation_at_centre(model_, voxel, e, u);
     double value = 0;
     if (field == SkinField::strain)
       value = principal_strain(k);
     else if (field == SkinField::stress)
-    {
-      const ModelVoxel at{ model_, discretisation_, voxel, e, &activation, running };
-      Matrix3<double> P = physics::elastic_stress(at, at.material(), k);
-      physics::add_fibres(at, k, P);
-      value = von_mises(P, k) / voxel.tissue_volume;
-    }
+      value = von_mises(cauchy_stress({ model_, discretisation_, voxel, e, &activation, running }, k));
     const double tissue = static_cast<double>(model_.fill[e]);
     for (const auto rank : corner_[v])
       if (rank >= 0)
