@@ -62,13 +62,16 @@ AccuracyProfile standard_profile(const Scene& scene, bool chosen)
   return scene.accuracy;
 }
 
-// The chosen expression or else the model's first expression. If the model has no expressions: 0.75 for all muscles.
-Controls controls_of(const Model& model, const AccuracyOptions& options)
+// The chosen expression, or else the model's first expression; empty if the model has none.
+std::string expression_of(const Model& model, const AccuracyOptions& options)
 {
-  if (!options.expression.empty())
-    return expression_controls(model, options.expression);
-  if (!model.expressions.empty())
-    return expression_controls(model, model.expressions.front().name);
+  return options.expression.empty() && !model.expressions.empty() ? model.expressions.front().name : options.expression;
+}
+
+Controls controls_of(const Model& model, const std::string& expression)
+{
+  if (!expression.empty())
+    return expression_controls(model, expression);
   Controls controls = rest_controls(model);
   std::fill(controls.activation.begin(), controls.activation.end(), 0.75F);
   return controls;
@@ -135,8 +138,15 @@ ClosedForm scene_subject(const AccuracyOptions& options)
   // All models have the same muscles and bones. Their names come from the coarsest model, which is baked fastest.
   AccuracySetting coarsest = plan.standard;
   coarsest.profile.voxel.fill(plan.edges.front());
-  const Controls controls = controls_of(subject.maker.bake(coarsest), options);
+  const Model model = subject.maker.bake(coarsest);
+  const std::string expression = expression_of(model, options);
+  const Controls controls = controls_of(model, expression);
   plan.history.activation = controls.activation;
+  plan.subject =
+      fmt::format("The motion is {}, reached in {:g} s and held for {:g} s. The setting 'standard' is profile '{}'.",
+                  expression.empty() ? "that of all muscles at 0.75, since the scene has no expressions"
+                                     : "expression '" + expression + "'",
+                  plan.history.ramp, plan.history.hold, plan.standard.profile.name);
   if (std::any_of(controls.bone.begin(), controls.bone.end(),
                   [](const auto& bone) { return !(bone == RigidTransform()); }))
     plan.history.bone = controls.bone;

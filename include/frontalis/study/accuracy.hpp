@@ -38,14 +38,15 @@ struct ModelMaker
 
 struct AccuracyPlan
 {
-  /// Closed form of the displacement at equilibrium [m] as a function of the rest position on the skin [m], in the face
-  /// frame. If it is set, errors are those from this form at equilibrium, and no reference with finer voxels is needed.
+  /// Closed form of the displacement at equilibrium [m] at a rest position on the skin [m], in the face frame. If it is
+  /// set, errors are those from it at equilibrium, and no reference with finer voxels is needed.
   std::function<Vector3(const Vector3&)> exact;
   AccuracySetting standard;               ///< the baseline; each sweep varies one of its knobs
   std::vector<AccuracyProfile> profiles;  ///< profiles of the scene, measured as further settings
   std::vector<std::string> knobs;         ///< knobs to vary one at a time; empty: all knobs, and combinations of them
   std::vector<double> edges;  ///< voxel edges [m], coarse to fine; without `exact` the last one is the reference's
   ActivationHistory history;
+  std::string subject;     ///< sentence on the motion and the standard setting, the first of the notes; may be empty
   double frame_rate = 30;  ///< published skins per simulated second [1/s]
   std::string folder;      ///< folder that stores the results of finished settings
   double budget = 0;       ///< wall seconds that the study may take; 0: no limit
@@ -136,8 +137,7 @@ std::string profile_text(const AccuracyRow& row, const std::string& name, const 
 const AccuracyRow& cheapest_within(const AccuracyFindings& findings, double tolerance);
 const AccuracyRow& most_accurate_within(const AccuracyFindings& findings, double seconds);
 
-/// A body whose equilibrium is known in closed form ("cantilever", "stretched_block", "active_bar";
-/// accuracy_closed_forms.cpp has their sources), and the plan of its study.
+/// A body whose equilibrium has a closed form (accuracy_closed_forms.cpp has the sources), and the plan of its study.
 struct ClosedForm
 {
   std::string name;

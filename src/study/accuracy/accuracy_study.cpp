@@ -191,6 +191,8 @@ AccuracyFindings Study::run()
 {
   findings_.standard = plan_.standard;
   findings_.closed_form = static_cast<bool>(plan_.exact);
+  if (!plan_.subject.empty())
+    findings_.notes.push_back(plan_.subject);
   try
   {
     choose_reference();
