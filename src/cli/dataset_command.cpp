@@ -104,13 +104,19 @@ RandomFrame choose(Random random, const DatasetOptions& options, const Model& mo
   // The face fills 45 to 90 % of the shorter side of the image.
   const double distance =
       chosen.camera.fx * extent / (random.between(0.45, 0.9) * std::min(options.size[0], options.size[1]));
-  const auto from = direction(random.between(-50, 50) * degree, random.between(-25, 25) * degree);
+  // Random numbers are drawn one by one, because compilers choose the order of arguments.
+  const auto random_direction = [&random](double yaw, double pitch_min, double pitch_max)
+  {
+    const double turn = random.between(-yaw, yaw), rise = random.between(pitch_min, pitch_max);
+    return direction(turn * degree, rise * degree);
+  };
+  const auto from = random_direction(50, -25, 25);
   chosen.camera.to_camera =
       look_at({ target[0] + distance * from[0], target[1] + distance * from[1], target[2] + distance * from[2] },
               target, random.between(-15, 15) * degree);
 
-  chosen.light.key = direction(random.between(-70, 70) * degree, random.between(-10, 60) * degree);
-  chosen.light.fill = direction(random.between(-90, 90) * degree, random.between(-10, 60) * degree);
+  chosen.light.key = random_direction(70, -10, 60);
+  chosen.light.fill = random_direction(90, -10, 60);
   chosen.light.key_strength = random.between(0.45, 0.85);
   chosen.light.fill_strength = random.between(0.1, 0.35);
   chosen.light.ambient = random.between(0.25, 0.45);
@@ -137,6 +143,8 @@ Json labels_of(const Model& model, const RandomFrame& chosen, const Renderer& re
                     { "fill_strength", chosen.light.fill_strength },
                     { "ambient", chosen.light.ambient } };
   json["action_units"] = chosen.units;
+  for (const char* mapping : { "activation", "bones", "landmarks" })
+    json[mapping] = Json::object();
   for (std::size_t m = 0; m < model.muscles.size(); ++m)
     json["activation"][model.muscles[m].name] = face.activation()[m];
   for (std::size_t b = 0; b < model.bones.size(); ++b)
@@ -228,11 +236,13 @@ void write_dataset(const DatasetOptions& options)
   check_list(list, options.first);
   const auto model = std::make_shared<const Model>(obtain_model(options.source));
   if (model->action_units.empty())
-    throw Error(options.source.path + ": has no action units, of which expressions are mixed (key `action_units`)");
+    throw Error(
+        options.source.path +
+        ": has no action units, of which expressions are mixed; give it some, such as `action_units: facs.yaml`");
   const Json description{ { "scene_hash", model->scene_hash }, { "seed", options.seed },
-                          { "seconds", options.seconds },      { "width", options.size[0] },
-                          { "height", options.size[1] },       { "depth_unit_m", depth_unit },
-                          { "labels", label_names() } };
+                          { "seconds", options.seconds },      { "samples", options.samples },
+                          { "width", options.size[0] },        { "height", options.size[1] },
+                          { "depth_unit_m", depth_unit },      { "labels", label_names() } };
   if (options.first > 0)
     check_same(description_file, description);
   make_folder(options.folder);

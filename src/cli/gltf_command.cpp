@@ -195,7 +195,8 @@ std::vector<std::string> chosen(const GltfOptions& options, const Model& model)
   const auto& all = options.expressions ? model.expressions : model.action_units;
   if (all.empty())
     throw Error(options.source.path + (options.expressions ? ": has no expressions" : ": has no action units") +
-                ", which are the morph targets");
+                ", which are the morph targets" +
+                (options.expressions || model.expressions.empty() ? "" : "; it has expressions: give --expressions"));
   if (!options.only.empty())
     return options.only;
   std::vector<std::string> names;

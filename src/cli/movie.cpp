@@ -1,12 +1,17 @@
 #include "cli/movie.hpp"
 
+#include "cli/command.hpp"
+
 #include "frontalis/error.hpp"
 #include "frontalis/render/png.hpp"
 #include "frontalis/study/table.hpp"
 
 #include <fmt/core.h>
 
+#include <sys/wait.h>
+
 #include <cmath>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <map>
@@ -88,11 +93,22 @@ void Movie::finish()
     return;
   // All frames have one palette without dithering, and colours that differ by at most 2 % count as equal, so that each
   // frame stores only what has moved.
+  const std::string partial = path_ + ".partial";
   const std::string command =
-      fmt::format("convert -delay 1x{:g} -loop 0 {}/frame_*.png +dither -colors 128 +map -fuzz 2% -layers optimize {}",
-                  frame_rate_, shell_word(folder_), shell_word(path_));
-  if (std::system(command.c_str()) != 0)
+      fmt::format("convert -delay {} -loop 0 {}/frame_*.png +dither -colors 128 +map -fuzz 2% -layers optimize gif:{}",
+                  std::lround(100 / frame_rate_), shell_word(folder_), shell_word(partial));
+  const int status = std::system(command.c_str());
+  std::error_code fault;
+  if (status == 0)
+    std::filesystem::rename(partial, path_, fault);
+  if (status != 0 || fault)
+  {
+    std::error_code ignored;
+    std::filesystem::remove(partial, ignored);
+    if (WIFSIGNALED(status) && WTERMSIG(status) == SIGINT)
+      throw Interrupted();
     throw Error(path_ + ": cannot be written by: " + command + "; its frames are in " + folder_);
+  }
   remove_files(folder_, frame_names);
   std::error_code not_empty;
   std::filesystem::remove(folder_, not_empty);

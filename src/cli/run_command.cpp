@@ -161,12 +161,23 @@ void switch_off(Solver& solver, EffectSet off)
       solver.switch_effect(*effect, false);
 }
 
-// Measures wrinkles, unless Ctrl-C ends the run before they are measured.
-void measure(const RunOptions& options, const Model& model, RunSummary& summary)
+// Throws Error if no skin lies in the part of which wrinkles are asked for.
+WrinkleSettings wrinkle_settings(const RunOptions& options, const Model& model)
 {
   WrinkleSettings settings;
   for (std::size_t i = 0; i < options.wrinkles_in.size(); ++i)
     (i < 2 ? settings.lower : settings.upper)[1 + i % 2] = 1e-3 * options.wrinkles_in[i];
+  const std::vector<std::array<float, 3>> skin = rest_in_face(model).vertices;
+  if (std::none_of(skin.begin(), skin.end(), [&](const auto& vertex) { return settings.contains(vertex); }))
+    throw Error(
+        "--wrinkles-in: no skin lies there; must be two corners LEFT,UP,LEFT,UP in mm from the origin of the face "
+        "frame");
+  return settings;
+}
+
+// Measures wrinkles, unless Ctrl-C ends the run before they are measured.
+void measure(const WrinkleSettings& settings, const Model& model, RunSummary& summary)
+{
   Progress progress;
   const auto go_on = [&](double done)
   {
@@ -197,6 +208,7 @@ void simulate(RunOptions& options)
   if (options.frame_rate <= 0)
     options.frame_rate = model->frame_rate;
   ControlCurve curve = options.demo ? demo_of(options, *model) : curve_of(options, *model);
+  const WrinkleSettings wrinkles = wrinkle_settings(options, *model);
   const std::unique_ptr<Solver> solver = make_solver(model, options.solver);
   switch_off(*solver, off);
   Run run{ options, *model, std::move(curve), *solver, std::nullopt };
@@ -236,7 +248,7 @@ void simulate(RunOptions& options)
     throw;
   }
   if (options.wrinkles || !options.wrinkles_in.empty())
-    measure(options, *model, summary);
+    measure(wrinkles, *model, summary);
   if (run.folder)
     run.folder->finish(json_of(*model, summary));
   print_result(*model, summary);

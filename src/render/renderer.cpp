@@ -72,18 +72,23 @@ void check(const RenderMesh& mesh)
 
 std::vector<std::array<float, 3>> normals_of(const RenderMesh& mesh)
 {
-  std::vector<Vector> sums(mesh.vertices.size());
+  // Areas may cancel where sheets touch; the normal there is that of one triangle.
+  std::vector<Vector> sums(mesh.vertices.size()), latest(mesh.vertices.size(), Vector{ 0, 0, 1 });
   for (const auto& t : mesh.triangles)
   {
     const Vector a = wide(mesh.vertices[t[0]]);
     const Vector area = cross(minus(wide(mesh.vertices[t[1]]), a), minus(wide(mesh.vertices[t[2]]), a));
     for (const std::int32_t corner : t)
+    {
       sums[corner] = along(sums[corner], 1, area);
+      if (dot(area, area) > 0)
+        latest[corner] = area;
+    }
   }
   std::vector<std::array<float, 3>> normals;
   normals.reserve(sums.size());
-  for (const Vector& sum : sums)
-    normals.push_back(narrow(unit(sum)));
+  for (std::size_t v = 0; v < sums.size(); ++v)
+    normals.push_back(narrow(unit(dot(sums[v], sums[v]) > 0 ? sums[v] : latest[v])));
   return normals;
 }
 

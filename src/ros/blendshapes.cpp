@@ -34,6 +34,8 @@ BlendshapeTable::BlendshapeTable(const std::string& file, const Model& model)
     for (const auto& entry : YAML::LoadFile(file))
     {
       name = entry.first.as<std::string>();
+      if (!entry.second.IsMap())
+        throw YAML::Exception(entry.second.Mark(), "found no mapping");
       Row& row = rows_[name];
       for (const auto& share : entry.second)
       {

@@ -9,6 +9,7 @@ fast the machine is. Commands act from the beginning of the frame in which they 
 """
 
 import argparse
+import os
 import sys
 import time
 
@@ -52,8 +53,11 @@ class Replay:
             name = "%s/%s" % (self.face, topic)
             if name not in types:
                 sys.exit("replay_bag: %s does not publish %s" % (self.face, name))
+            message_class = get_message_class(types[name])
+            if "header" not in message_class.__slots__:
+                sys.exit("replay_bag: messages on %s have no header with a time; give other --topics" % name)
             subscriber = rospy.Subscriber(
-                name, get_message_class(types[name]), lambda message, name=name: self.outputs.update({name: message})
+                name, message_class, lambda message, name=name: self.outputs.update({name: message})
             )
             self.outputs[name] = None
             wait(subscriber.get_num_connections, "a connection to " + name)
@@ -115,9 +119,13 @@ def main():
     parser.add_argument("--topics", nargs="+", default=["state", "landmarks", "skin_points"], help="topics of the face, with a header")
     options = parser.parse_args(rospy.myargv()[1:])
     rospy.init_node("replay_bag", anonymous=True, disable_signals=True)
+    partial = options.output + ".partial"
     try:
-        with rosbag.Bag(options.bag) as bag, rosbag.Bag(options.output, "w") as output:
+        if os.path.exists(options.output) and os.path.samefile(options.bag, options.output):
+            raise OSError("OUTPUT is the recording itself")
+        with rosbag.Bag(options.bag) as bag, rosbag.Bag(partial, "w") as output:
             frames = Replay(options.face, options.topics).run(bag, options.rate, output)
+        os.replace(partial, options.output)
     except (OSError, rosbag.ROSBagException, rospy.ROSException, rospy.ServiceException) as error:
         sys.exit("replay_bag: %s" % error)
     print("%d frames in %s" % (frames, options.output))

@@ -71,7 +71,7 @@ class Joint:
 class Controller:
     def __init__(self):
         robot = xml.fromstring(rospy.get_param("robot_description"))
-        self.joints = [Joint(joint) for joint in robot.iter("joint") if joint.get("type") in MOVING]
+        self.joints = [Joint(joint) for joint in robot.findall("joint") if joint.get("type") in MOVING]
         self.by_name = {joint.name: joint for joint in self.joints}
         self.mutex = threading.Lock()
         self.states = rospy.Publisher("joint_states", JointState, queue_size=1)
@@ -80,7 +80,7 @@ class Controller:
         self.pose_time = rospy.Duration(rospy.get_param("~pose_time", 0.5))
         self.frames = tf2_ros.Buffer()
         self.listener = tf2_ros.TransformListener(self.frames)
-        parents = {joint.find("child").get("link"): joint.find("parent").get("link") for joint in robot.iter("joint")}
+        parents = {joint.find("child").get("link"): joint.find("parent").get("link") for joint in robot.findall("joint")}
         for link in parents:
             behind, end = [], link
             while link:

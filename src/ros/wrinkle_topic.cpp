@@ -3,7 +3,9 @@
 #include "frontalis/ros/conversions.hpp"
 
 #include <boost/make_shared.hpp>
+#include <ros/console.h>
 
+#include <algorithm>
 #include <utility>
 
 namespace frontalis
@@ -47,6 +49,9 @@ void WrinkleTopic::start(std::shared_ptr<const Model> model, const std::vector<d
   face->model = std::move(model);
   for (std::size_t i = 0; i < part.size(); ++i)
     (i < 2 ? face->settings.lower : face->settings.upper)[1 + i % 2] = part[i];
+  const std::vector<std::array<float, 3>> skin = rest_in_face(*face->model).vertices;
+  if (std::none_of(skin.begin(), skin.end(), [&](const auto& vertex) { return face->settings.contains(vertex); }))
+    ROS_WARN("~wrinkles_in: no skin lies there; must be two corners LEFT, UP, LEFT, UP in metres");
   const std::lock_guard<std::mutex> lock(mutex_);
   face_ = std::move(face);
   wanted_.reset();

@@ -66,6 +66,22 @@ TEST(Head, TakesEachDimensionThatIsAskedFor)
   }
 }
 
+TEST(Head, RefusesDimensionsThatFoldTheSkin)
+{
+  // lips that are higher than the place between nose and mouth
+  try
+  {
+    Head(shipped(), { { "sn_sto", 13e-3 }, { "ls_sto", 13.1e-3 } });
+    FAIL() << "the skin is folded";
+  }
+  catch (const Error& error)
+  {
+    EXPECT_NE(std::string(error.what()).find("'ls_sto' 13.1 mm, 'sn_sto' 13.0 mm fold the skin at ("),
+              std::string::npos)
+        << error.what();
+  }
+}
+
 TEST(Head, TakesTheMeansOfEitherSex)
 {
   for (const bool men : { true, false })

@@ -55,6 +55,8 @@ struct Plot
 /// PATH.gnuplot, which gnuplot can draw on another machine.
 void write_plot(const Plot& plot, const std::string& path);
 
+/// The text as a string in gnuplot's commands.
+std::string gnuplot_string(const std::string& text);
 /// Runs commands of gnuplot. Throws Error if it fails or is missing, and leaves the commands in PATH.gnuplot.
 void run_gnuplot(const std::string& commands, const std::string& path);
 

@@ -21,6 +21,14 @@ struct WrinkleSettings
   double section_distance = 2e-3;  ///< distance between two sections across the furrows [m]
   /// Only furrows in this box at rest count; it is in the skin's frame [m].
   std::array<double, 3> lower{ { -1e9, -1e9, -1e9 } }, upper{ { 1e9, 1e9, 1e9 } };
+
+  bool contains(const std::array<float, 3>& at_rest) const
+  {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (at_rest[axis] < lower[axis] || at_rest[axis] > upper[axis])
+        return false;
+    return true;
+  }
 };
 
 /// One furrow, a line in the skin.

@@ -3,6 +3,7 @@
 #include "frontalis/model/body_shape.hpp"
 #include "frontalis/physics/number.hpp"
 #include "frontalis/study/plot.hpp"
+#include "frontalis/study/table.hpp"
 
 #include <fmt/format.h>
 
@@ -10,7 +11,6 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 
 namespace frontalis
 {
@@ -87,12 +87,12 @@ void write_contact_sheet(const std::vector<std::pair<std::string, std::vector<st
                           high - top - title / 2);
   }
   const std::string raw = path + ".rgb";
-  std::ofstream(raw, std::ios::binary) << pixels;
+  write_text(raw, pixels);
   run_gnuplot(fmt::format("set terminal pngcairo noenhanced size {0},{1} font 'sans,12' background '#ffffff'\n"
-                          "set output '{2}.png'\nset margins 0,0,0,0\nunset border\nunset tics\nunset key\n"
+                          "set output {2}\nset margins 0,0,0,0\nunset border\nunset tics\nunset key\n"
                           "set xrange [-0.5:{0}-0.5]\nset yrange [-0.5:{1}-0.5]\n{3}"
-                          "plot '{4}' binary array=({0},{1}) flipy format='%uchar' using 1:2:3 with rgbimage\n",
-                          wide, high, path, labels, raw),
+                          "plot {4} binary array=({0},{1}) flipy format='%uchar' using 1:2:3 with rgbimage\n",
+                          wide, high, gnuplot_string(path + ".png"), labels, gnuplot_string(raw)),
               path);
   std::filesystem::remove(raw);
 }

@@ -32,6 +32,8 @@ std::array<double, 3> coordinates_from(const YAML::Node& node)
 std::vector<Unknown> unknowns_from(const YAML::Node& node)
 {
   std::vector<Unknown> out;
+  if (!(node.IsSequence() || node.IsMap()) || node.size() == 0)
+    throw YAML::Exception(node.Mark(), "must be a list of names, or a mapping of names to limits");
   if (node.IsSequence())
     for (const auto& name : node)
       out.push_back({ name.as<std::string>() });
@@ -55,6 +57,8 @@ FitRequest read_fit_request(const std::string& path)
     for (const auto& entry : YAML::LoadFile(path))
     {
       const auto key = entry.first.as<std::string>();
+      if ((key == "moved" || key == "at") && !entry.second.IsMap())
+        throw YAML::Exception(entry.second.Mark(), key + ": must be a mapping of landmarks to coordinates");
       if (key == "moved" || key == "at")
         for (const auto& target : entry.second)
           request.targets.push_back(

@@ -185,6 +185,8 @@ RetargetResult retarget(const std::shared_ptr<const Model>& model, const Landmar
     }
     for (std::size_t t = 0; t < values.size(); ++t)
     {
+      if (track.time[t] <= 0)
+        continue;  // a motion begins at rest, whatever its first values are
       // Each time is corrected separately, so that effects of inertia do not count as influence.
       LandmarkFit moment(problem);
       moment.set_targets(targets[t]);

@@ -30,12 +30,6 @@ std::string replaced(const std::string& text, const char* what, const char* by)
   return std::regex_replace(text, std::regex(what), by);
 }
 
-// A gnuplot string in single quotes, which are doubled inside; a line break needs double quotes.
-std::string quoted(const std::string& text)
-{
-  return "'" + replaced(replaced(text, "'", "''"), "\n", "'.\"\\n\".'") + "'";
-}
-
 const char* colour_of(std::size_t index) { return colours[index % std::size(colours)]; }
 
 std::string style_of(const Plot::Curve& curve, std::size_t index)
@@ -71,7 +65,7 @@ std::string script(const Plot& plot, const std::string& path)
     out << "EOD\n";
     for (std::size_t i = 0; i < curve.labels.size(); ++i)
       if (!curve.labels[i].empty())
-        out << "set label " << quoted(curve.labels[i]) << " at " << curve.x[i] << ',' << curve.y[i] << ' '
+        out << "set label " << gnuplot_string(curve.labels[i]) << " at " << curve.x[i] << ',' << curve.y[i] << ' '
             << curve.label_place << " font ',13' tc rgb '" << (curve.coloured_labels ? colour_of(c) : "#222222")
             << "' front\n";
   }
@@ -82,10 +76,10 @@ std::string script(const Plot& plot, const std::string& path)
   out << "set encoding utf8\nset border 3 lw 1 lc rgb '#444444'\nset tics nomirror out\n"
       << "set grid lw 1 dt 1 lc rgb '#dddddd'\nset key " << plot.key << (below ? "" : " opaque")
       << " samplen 2 spacing " << (below ? 1.0 : 1.2) << "\n"
-      << "set title " << quoted(plot.title)
+      << "set title " << gnuplot_string(plot.title)
       << "\nset xlabel "
       // An empty line separates the label from a legend below it.
-      << quoted(plot.x_label + (below ? "\n " : "")) << "\nset ylabel " << quoted(plot.y_label) << '\n';
+      << gnuplot_string(plot.x_label + (below ? "\n " : "")) << "\nset ylabel " << gnuplot_string(plot.y_label) << '\n';
   for (const auto& [axis, log, range] :
        { std::tuple{ 'x', plot.x_log, plot.x_range }, std::tuple{ 'y', plot.y_log, plot.y_range } })
   {
@@ -99,14 +93,14 @@ std::string script(const Plot& plot, const std::string& path)
       out << (t ? ", " : std::string("set ") + axis + "tics (") << ticks[t] << (t + 1 == ticks.size() ? ")\n" : "");
   for (std::size_t t = 0; t < plot.x_names.size(); ++t)
     // Percent signs are doubled, because gnuplot reads tick labels as format strings.
-    out << (t ? ", " : "set xtics rotate by 25 right (") << replaced(quoted(plot.x_names[t]), "%", "%%") << ' ' << t
-        << (t + 1 == plot.x_names.size() ? ")\nset boxwidth 0.6\nset lmargin 16\nset bmargin 7\n" : "");
+    out << (t ? ", " : "set xtics rotate by 25 right (") << replaced(gnuplot_string(plot.x_names[t]), "%", "%%") << ' '
+        << t << (t + 1 == plot.x_names.size() ? ")\nset boxwidth 0.6\nset lmargin 16\nset bmargin 7\n" : "");
   const auto draw = [&](const std::string& terminal, const std::string& file)
   {
-    out << "set terminal " << terminal << "\nset output " << quoted(file) << "\nplot ";
+    out << "set terminal " << terminal << "\nset output " << gnuplot_string(file) << "\nplot ";
     for (std::size_t c = 0; c < plot.curves.size(); ++c)
       out << (c ? ", " : "") << "$curve" << c << ' ' << style_of(plot.curves[c], c)
-          << (plot.curves[c].name.empty() ? " notitle" : " title " + quoted(plot.curves[c].name));
+          << (plot.curves[c].name.empty() ? " notitle" : " title " + gnuplot_string(plot.curves[c].name));
     out << "\nset output\n";
   };
   const std::string size = fmt::format(" noenhanced size {},{}", plot.width, plot.height);
@@ -116,6 +110,12 @@ std::string script(const Plot& plot, const std::string& path)
 }
 
 }  // namespace
+
+// Single quotes are doubled inside of single quotes; a line break needs double quotes.
+std::string gnuplot_string(const std::string& text)
+{
+  return "'" + replaced(replaced(text, "'", "''"), "\n", "'.\"\\n\".'") + "'";
+}
 
 void run_gnuplot(const std::string& commands, const std::string& path)
 {

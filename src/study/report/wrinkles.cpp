@@ -249,12 +249,7 @@ std::array<Vector, 2> directions_of(const SkinState& rest, const SmoothSkin& smo
   Vector normal = Vector::Zero();
   for (const auto& t : triangles)
   {
-    const auto outside = [&](std::int32_t v)
-    {
-      const auto& p = rest.vertices[v];
-      return p[0] < settings.lower[0] || p[1] < settings.lower[1] || p[2] < settings.lower[2] ||
-             p[0] > settings.upper[0] || p[1] > settings.upper[1] || p[2] > settings.upper[2];
-    };
+    const auto outside = [&](std::int32_t v) { return !settings.contains(rest.vertices[v]); };
     if (std::any_of(t.begin(), t.end(), outside))
       continue;
     const Vector a = smooth.foot[t[1]] - smooth.foot[t[0]], b = smooth.foot[t[2]] - smooth.foot[t[0]];

@@ -30,6 +30,8 @@ constexpr double hair_margin = 5.5e-3;
 constexpr double hairline_wave = 1e-3;  // [m] by which locks shift the hairline
 constexpr double lock_height = 0.12;    // height of a lock divided by the thickness of the hair
 
+// Least volume ratio of the skin at given dimensions. Heads that are folded or nearly so are refused.
+constexpr double least_volume_ratio = 0.05;
 constexpr int default_levels = 2;  // subdivisions of the skin from which depths are measured
 
 /// Steps of subdivision after which edges are at most `edge` long on average.
@@ -104,9 +106,29 @@ Head::Head(std::shared_ptr<const HeadTemplate> head, const std::map<std::string,
       landmarks_[name][1] = 0;
   }
   warp_.emplace(*head_, landmarks_, dimensions);
+  check_folds(dimensions);
   bones_.emplace(*head_, *tree_, tissue);
   if (tissue != 1)
     usual_bones_.emplace(*head_, *tree_);
+}
+
+void Head::check_folds(const std::map<std::string, double>& dimensions) const
+{
+  double least = 1;
+  Vector3d where = Vector3d::Zero();
+  for (const Vector3& vertex : default_skin_.vertices)
+  {
+    const double ratio = warp_->volume_ratio(to_vector(vertex));
+    if (ratio < least)
+    {
+      least = ratio;
+      where = (*warp_)(to_vector(vertex));
+    }
+  }
+  if (least > least_volume_ratio)
+    return;
+  throw failure("head: {} fold the skin at ({:.0f}, {:.0f}, {:.0f}) mm; take values nearer to the means",
+                words_for(dimensions), 1e3 * where[0], 1e3 * where[1], 1e3 * where[2]);
 }
 
 Vector3d Head::bone_shift(const Vector3d& p) const

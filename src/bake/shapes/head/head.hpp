@@ -14,6 +14,9 @@
 namespace frontalis
 {
 
+/// Dimensions and their values in mm, for messages.
+std::string words_for(const std::map<std::string, double>& dimensions);
+
 /// Deforms the default head to given dimensions. The displacement is the most likely one of a smooth random field that
 /// gives each independent dimension its value (kriging with a Matern 3/2 covariance, from distances of landmarks). The
 /// head is shifted so that the fissure of the mouth keeps its height.
@@ -26,6 +29,9 @@ public:
            const std::map<std::string, double>& wanted);
 
   Vector3d operator()(const Vector3d& p) const;
+  /// Volume of a small piece of tissue at a place, divided by that in the default head; not positive where the head is
+  /// folded.
+  double volume_ratio(const Vector3d& p) const;
 
 private:
   std::vector<Vector3d> places_;   ///< landmarks of both sides
@@ -91,6 +97,8 @@ public:
   Vector3d landmark(const std::string& name, bool right = false) const;
 
 private:
+  /// Throws Error if the dimensions fold the skin, with the place.
+  void check_folds(const std::map<std::string, double>& dimensions) const;
   TriangleMesh skin(const std::string& name, double edge) const;
   TriangleMesh eye(bool left, double edge) const;
   TriangleMesh bone(const std::string& name, double edge) const;

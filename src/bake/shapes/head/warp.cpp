@@ -25,6 +25,12 @@ double covariance(double distance)
   return (1 + r) * std::exp(-r);
 }
 
+Vector3d covariance_gradient(const Vector3d& way)
+{
+  const double r = std::sqrt(3.0) * way.norm() / correlation_length;
+  return -3 / (correlation_length * correlation_length) * std::exp(-r) * way;
+}
+
 Vector3d mirrored(Vector3d p)
 {
   p[1] = -p[1];
@@ -40,6 +46,14 @@ struct Span
 };
 
 }  // namespace
+
+std::string words_for(const std::map<std::string, double>& dimensions)
+{
+  std::string words;
+  for (const auto& [name, value] : dimensions)
+    words += fmt::format("{}'{}' {:.1f} mm", words.empty() ? "" : ", ", name, 1e3 * value);
+  return words;
+}
 
 HeadWarp::HeadWarp(const HeadTemplate& head, const std::map<std::string, Vector3d>& landmarks,
                    const std::map<std::string, double>& wanted)
@@ -66,7 +80,7 @@ HeadWarp::HeadWarp(const HeadTemplate& head, const std::map<std::string, Vector3
                                 [&n = name](const auto& entry) { return entry.name == n; });
     if (d == head.dimensions.end())
       throw failure("head: there is no dimension '{}'; there are {}", name, fmt::join(known, ", "));
-    if (std::abs(value - d->mean) > most_deviations * d->deviation)
+    if (std::abs(value - d->mean) > most_deviations * d->deviation + 0.05e-3)  // as the message rounds
       throw failure("head: dimension '{}' is {:.1f} mm; must be {:.1f} to {:.1f} mm", name, 1e3 * value,
                     1e3 * (d->mean - most_deviations * d->deviation), 1e3 * (d->mean + most_deviations * d->deviation));
   }
@@ -129,15 +143,8 @@ HeadWarp::HeadWarp(const HeadTemplate& head, const std::map<std::string, Vector3
     lift_ = places_[level->second][2] - moved[level->second][2];
   for (const Span& span : spans)
     if (std::abs(measure(moved, span.from, span.to) - span.wanted) > 0.5 * derived_tolerance)
-    {
-      std::vector<std::string> asked;
-      asked.reserve(wanted.size());
-      for (const auto& [name, value] : wanted)
-        asked.push_back(fmt::format("'{}' {:.1f} mm", name, 1e3 * value));
-      throw failure("head: dimension '{}' cannot be {:.1f} mm beside {}; {:.1f} mm is the closest",
-                    span.dimension->name, 1e3 * span.wanted, fmt::join(asked, ", "),
-                    1e3 * measure(moved, span.from, span.to));
-    }
+      throw failure("head: {} cannot be had together with '{}' {:.1f} mm; take values nearer to the means",
+                    words_for(wanted), span.dimension->name, 1e3 * span.wanted);
   for (const auto& d : head.dimensions)
   {
     const auto given = wanted.find(d.name);
@@ -146,9 +153,9 @@ HeadWarp::HeadWarp(const HeadTemplate& head, const std::map<std::string, Vector3
     const double follows = measure(moved, left[d.from], d.to.empty() ? right[d.from] : left[d.to]);
     if (std::abs(follows - given->second) > derived_tolerance)
       throw failure(
-          "head: dimension '{}' is {:.1f} mm, but '{}' follows from '{}', which give{} {:.1f} mm; leave one out",
-          d.name, 1e3 * given->second, d.name, fmt::join(d.derived_from, "' and '"),
-          d.derived_from.size() > 1 ? "" : "s", 1e3 * follows);
+          "head: dimension '{}' is {:.1f} mm, but it follows from '{}', which give{} {:.1f} mm; set {} instead", d.name,
+          1e3 * given->second, fmt::join(d.derived_from, "' and '"), d.derived_from.size() > 1 ? "" : "s",
+          1e3 * follows, d.derived_from.size() > 1 ? "one of those" : "that one");
   }
 }
 
@@ -158,6 +165,14 @@ Vector3d HeadWarp::operator()(const Vector3d& p) const
   for (std::size_t i = 0; i < places_.size(); ++i)
     sum += covariance((p - places_[i]).norm()) * weights_[i];
   return sum;
+}
+
+double HeadWarp::volume_ratio(const Vector3d& p) const
+{
+  Eigen::Matrix3d gradient = Eigen::Matrix3d::Identity();
+  for (std::size_t i = 0; i < places_.size(); ++i)
+    gradient += weights_[i] * covariance_gradient(p - places_[i]).transpose();
+  return gradient.determinant();
 }
 
 }  // namespace frontalis
