@@ -86,7 +86,7 @@ inline ContactPoint contact_point(const Contact& contact, const ContactBody& bod
              static_cast<float>(from.rest.z - body.middle[2]) },
            static_cast<float>(norm(at.offset) - contact.field.radius),
            { at.cell[0], at.cell[1], at.cell[2] },
-           0 };
+           static_cast<float>(counted(contact) * double(from.stiffness)) };
 }
 
 /// The initial content of a point's copy of samples (see sample_words). It says that no samples are stored yet.

@@ -56,6 +56,7 @@ CudaSolver::CudaSolver(const BackendInput& input, const std::string& remark)
     account_ = std::make_unique<DeviceAccount>(*model_, device_);
     device_.viscosity().keep_account();
   }
+  device_monitor();  // the guard needs it, and memory must not run out later
   rest();
   // as after each change of masses, so that equal masses have equal bits
   device_.take_masses(u_[0].data(), stream_);
@@ -262,9 +263,18 @@ std::unique_ptr<Solver> make_cuda_solver(std::shared_ptr<const Model> model, con
   if (model->muscles.size() > most_muscles)
     throw BackendUnavailable(
         fmt::format("backend cuda: {} muscles; allowed are {}", model->muscles.size(), most_muscles));
-  return std::make_unique<TimeStepper>(std::move(model), settings,
-                                       [&](const BackendInput& input)
-                                       { return std::make_unique<cuda::CudaSolver>(input, remark); });
+  const auto make = [&](const BackendInput& input)
+  {
+    try
+    {
+      return std::make_unique<cuda::CudaSolver>(input, remark);
+    }
+    catch (const cuda::DeviceFault& fault)
+    {
+      throw BackendUnavailable(fault.what());  // another backend may do
+    }
+  };
+  return std::make_unique<TimeStepper>(std::move(model), settings, make);
 }
 
 }  // namespace

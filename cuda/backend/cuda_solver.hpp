@@ -50,6 +50,7 @@ public:
   std::vector<Reaction> reactions() const override;
   std::vector<RigidTransform> bodies() const override;
   std::int64_t lost_points() const override;
+  double body_energy() const override;
   void skin(SkinState& out) override;
 
 private:
@@ -71,6 +72,8 @@ private:
   void download(const DeviceArray<float4>& field, NodalVectors& out) const;
   /// Copies displacements to the device; an empty `in` stands for zeros.
   void upload_displacements(const NodalVectors& in, DeviceArray<float4>& to) const;
+  /// Passes the latest step on to the host's account of the parts, unless a ledger has done so.
+  void follow_without_account() const;
   void synchronise() const { require(cudaStreamSynchronize(stream_), "stepping"); }
 
   struct State;

@@ -197,12 +197,11 @@ PlanMeasures CudaSolver::run(const StepPlan& plan)
   int done = 0;
   if (still_moved_ || plan.first_kick != plan.dt)
   {
-    const int before = present_;
     kick(g, plan.first_kick);
     do_steps(plan, g, 0, 1);
     kick(g, plan.dt);
-    if (still_moved_)
-      require(launch_hold(still_.data(), static_cast<std::uint32_t>(still_.size()), u_[before].data(), stream_),
+    for (int buffer = 0; still_moved_ && buffer < 2; ++buffer)
+      require(launch_hold(still_.data(), static_cast<std::uint32_t>(still_.size()), u_[buffer].data(), stream_),
               "holding still nodes");
     still_moved_ = false;
     done = 1;
@@ -247,17 +246,29 @@ void CudaSolver::queue_forces(float4* at, const float* activation, float4* out, 
   g.activation_begin = g.activation_end = activation;
   g.steps = 1;
   g.forces_only = true;
-  const int present = present_;
-  g.u[present] = at;
-  g.u[1 - present] = out;
+  g.u[present_] = at;
+  g.u[1 - present_] = out;
   g.contact.spring = g.shell.spring = springs;
-  const StepLaunch launch = launch_;
-  if (springs)
-    launch_.effects = device_.launch_with_parts().effects;
-  begin_steps(g, 0, 1);
-  step(g);
-  launch_ = launch;
-  present_ = present;
+  // restored even if a launch fails
+  struct Kept
+  {
+    StepLaunch& launch;
+    int& present;
+    const StepLaunch launch_then = launch;
+    const int present_then = present;
+    ~Kept()
+    {
+      launch = launch_then;
+      present = present_then;
+    }
+  };
+  {
+    const Kept kept{ launch_, present_ };
+    if (springs)
+      launch_.effects = device_.launch_with_parts().effects;
+    begin_steps(g, 0, 1);
+    step(g);
+  }
   float* const none[3] = { nullptr, nullptr, nullptr };
   for (const auto& part : device_.parts())
     if (springs && (!launch_.patches || part->has_kernels(false)))
@@ -318,22 +329,27 @@ void CudaSolver::add_energies(bool open, NodalVectors& forces, EnergyLedger& led
   for (std::size_t axis = 0; axis < 3; ++axis)
     for (const auto& moved : u)
       components[axis].push_back(moved[axis]);
+  follow_without_account();
   for (DevicePart* const part : running)
     part->add_energies(components, conditions_.bone, open, forces, ledger);
 }
 
-// With a ledger the host has already processed every step (DevicePart::follow).
+void CudaSolver::follow_without_account() const
+{
+  if (!account_)
+    for (const auto& part : device_.parts())
+      if (!part->idle())
+        part->follow({ 0, 0, 0, conditions_.bone, conditions_.bone, conditions_.activation });
+}
+
 std::vector<Reaction> CudaSolver::reactions() const
 {
   synchronise();
+  follow_without_account();
   std::vector<Reaction> all;
   for (const auto& part : device_.parts())
-  {
-    if (!account_ && !part->idle())
-      part->follow({ 0, 0, 0, conditions_.bone, conditions_.bone, conditions_.activation });
     for (const Reaction& reaction : part->reactions())
       all.push_back(reaction);
-  }
   return all;
 }
 
@@ -354,6 +370,15 @@ std::int64_t CudaSolver::lost_points() const
   for (const auto& part : device_.parts())
     lost += part->lost_points();
   return lost;
+}
+
+double CudaSolver::body_energy() const
+{
+  synchronise();
+  double sum = 0;
+  for (const auto& part : device_.parts())
+    sum += part->idle() ? 0 : part->body_energy();
+  return sum;
 }
 
 DeviceMonitor& CudaSolver::device_monitor()

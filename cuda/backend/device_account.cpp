@@ -75,12 +75,15 @@ void DeviceAccount::open(const StepArguments& g, const float4* u, cudaStream_t s
     for (const auto* values : { &before_[axis], &free_[axis] })
       values->clear();
   memory_.clear();
-  require(launch_fibre_work(g, fibres(), u, 0, true, stream), "measuring fibres");
+  fibre_work_.clear();
+  if (g.fibres != nullptr)
+    require(launch_fibre_work(g, fibres(), u, 0, true, stream), "measuring fibres");
 }
 
 void DeviceAccount::measure(const StepArguments& g, const float4* u, int step, cudaStream_t stream)
 {
-  require(launch_fibre_work(g, fibres(), u, step, false, stream), "work of fibres");
+  if (g.fibres != nullptr)  // else no effect of fibres runs
+    require(launch_fibre_work(g, fibres(), u, step, false, stream), "work of fibres");
 }
 
 void DeviceAccount::before_step(const StepArguments& g, int step, cudaStream_t stream)

@@ -297,6 +297,16 @@ std::int64_t DeviceBodyContact::lost_points() const
                        [&](std::uint32_t copy) { return holds[copy].touching == int(physics::Touching::lost); });
 }
 
+double DeviceBodyContact::body_energy() const
+{
+  std::vector<PushedMotion> motions;
+  motions_.download(motions);
+  double sum = 0;
+  for (std::size_t p = 0; p < motions.size(); ++p)
+    sum += energy_of(model_.contacts[static_cast<std::size_t>(host_pushed_[p].body)], motions[p]);
+  return sum;
+}
+
 void DeviceBodyContact::add_energies(const std::vector<double> (&u)[3], const std::vector<RigidTransform>& bones,
                                      bool open, Vectors& forces, EnergyLedger& ledger)
 {

@@ -23,7 +23,7 @@ public:
                     const std::vector<std::uint32_t>& device_node);
 
   bool idle() const override { return host_.idle(); }
-  Effects effects() const override { return of_nodes | Effects::contact; }
+  Effects effects() const override { return point_.empty() ? Effects::none : of_nodes | Effects::contact; }
   void describe(StepArguments& g) const override;
   void list_arrays(ArrayList& list) override;
   void run(EffectSet running) override;
@@ -38,6 +38,7 @@ public:
   std::vector<Reaction> reactions() const override { return host_.reactions(); }
   std::vector<RigidTransform> bodies(const std::vector<RigidTransform>& bones) const override;
   std::int64_t lost_points() const override;
+  double body_energy() const override;
   std::vector<float> motion(const std::vector<std::vector<RigidTransform>>& bones) const override;
   void add_energies(const std::vector<double> (&u)[3], const std::vector<RigidTransform>& bones, bool open,
                     Vectors& forces, EnergyLedger& ledger) override;

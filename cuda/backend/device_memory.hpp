@@ -15,15 +15,24 @@ namespace frontalis
 namespace cuda
 {
 
-/// Throws Error with the failed operation and the message of the CUDA runtime, or BackendUnavailable if memory ran out.
+/// A failure of the device or of its runtime.
+class DeviceFault : public Error
+{
+public:
+  using Error::Error;
+};
+
+/// Throws DeviceFault with the failed operation and the message of the CUDA runtime, or BackendUnavailable if memory
+/// ran out.
 inline void require(cudaError_t status, const char* what)
 {
   if (status == cudaSuccess)
     return;
+  cudaGetLastError();  // or the next launch would report this error again
   const std::string text = std::string("backend cuda: ") + what + ": " + cudaGetErrorString(status);
   if (status == cudaErrorMemoryAllocation)
     throw BackendUnavailable(text);
-  throw Error(text);
+  throw DeviceFault(text);
 }
 
 template <class T>

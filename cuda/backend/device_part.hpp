@@ -58,8 +58,9 @@ public:
   virtual std::vector<Reaction> reactions() const { return {}; }
   /// See NodePart::bodies. follow() need not have been called.
   virtual std::vector<RigidTransform> bodies(const std::vector<RigidTransform>& /*bones*/) const { return {}; }
-  /// See NodePart::lost_points. follow() need not have been called.
+  /// See NodePart. follow() need not have been called.
   virtual std::int64_t lost_points() const { return 0; }
+  virtual double body_energy() const { return 0; }
   /// See NodePart::add_energies.
   virtual void add_energies(const std::vector<double> (&u)[3], const std::vector<RigidTransform>& bones, bool open,
                             Vectors& forces, EnergyLedger& ledger) = 0;

@@ -65,6 +65,9 @@ DeviceTissueContact::DeviceTissueContact(const Model& model, const Discretisatio
     *words = DeviceArray<float4>(count);
   change_ = DeviceArray<float4>(all_.rubs ? count : 0);
   dual_ = DeviceArray<float4>(2 * count);
+  // searches for the time step read them before the first step
+  for (const auto* const words : { &placed_, &normal_, &change_, &dual_ })
+    words->clear();
   pairs_ = DeviceArray<TouchPair>(touch_search::most_pairs * count);
   lost_ = DeviceArray<double>(count);
   control_ = DeviceArray<TouchControl>(1);

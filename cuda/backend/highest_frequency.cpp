@@ -40,7 +40,7 @@ void CudaSolver::prepare_search()
   search_->start.upload(values.data(), values.size());
   require(cudaMemcpy(search_->sizes(0), size.data(), size.size() * sizeof(double2), cudaMemcpyHostToDevice),
           "copying the sums of a start");
-  if (!discretisation_.followers.empty())
+  if (!discretisation_.followers.empty() || !discretisation_.bound_mass.empty())
     prepare_followers(root);
 }
 

@@ -100,6 +100,7 @@ StepLaunch choose_launch(const DeviceModel& device)
     return launch;
   }
   launch.blocks = multiprocessors();
+  resident_blocks(device.launch_with_parts());  // prepares the kernel of searches for the time step
   if (resident_blocks(launch) < launch.blocks)
     throw BackendUnavailable(fmt::format(
         "backend cuda: patches of {} bytes of shared memory do not fit a multiprocessor", launch.shared_bytes));

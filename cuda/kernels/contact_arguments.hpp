@@ -31,7 +31,7 @@ struct alignas(16) ContactPoint
   float arm[3];       ///< vector from ContactBody::middle to its rest position [m]
   float distance;     ///< distance from a spherical body at rest [m]
   std::int32_t cell[3];
-  std::int32_t unused;
+  float spring;  ///< stiffness that counts in the search for the time step [N/m]
 };
 
 /// The part of a point's contact state that is not in ContactArguments::grips.

@@ -96,7 +96,7 @@ __device__ __forceinline__ Push find_push(const StepArguments& g, const ContactP
   using physics::Touching;
   const ContactArguments& c = g.contact;
   if (c.spring)
-    return { -point.stiffness * at.moved, 0 };
+    return { -point.spring * at.moved, 0 };
   const float4 held = c.grips[at.index], clear = c.clearances[at.index];
   ContactHold hold = c.holds[at.index];
   const ContactBody& body = c.bodies[point.body];

@@ -1,5 +1,7 @@
 #include "cuda/kernels/patch_kernel.cuh"
 
+#include <mutex>
+
 namespace frontalis
 {
 namespace cuda
@@ -40,8 +42,10 @@ int resident_blocks(const StepLaunch& launch)
   const void* const kernel = cuda::kernel(launch.effects);
   const auto bytes = static_cast<int>(launch.shared_bytes);
   cudaFuncAttributes known{};
-  // The kernel's limit of shared memory is common to all solvers. It is never lowered, because another solver may need
-  // more.
+  // The kernel's limit of shared memory is common to all solvers, which may be made at the same time. It is never
+  // lowered, because another solver may need more.
+  static std::mutex mutex;
+  const std::lock_guard<std::mutex> lock(mutex);
   if (cudaGetDevice(&device) != cudaSuccess ||
       cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device) != cudaSuccess ||
       cudaFuncGetAttributes(&known, kernel) != cudaSuccess ||
@@ -49,7 +53,10 @@ int resident_blocks(const StepLaunch& launch)
        cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, bytes) != cudaSuccess) ||
       cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, kernel, launch.threads, launch.shared_bytes) !=
           cudaSuccess)
+  {
+    cudaGetLastError();  // or the next launch would report this error
     return 0;
+  }
   return processors * blocks;
 }
 

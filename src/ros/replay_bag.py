@@ -82,6 +82,17 @@ class Replay:
         self.inputs[topic].publish(message)
         wait(lambda: self.list_muscles().messages > before, "the face to read " + topic)
 
+    def reset(self, start):
+        """Resets the face until its frames arrive, because rospy counts connections before they stand."""
+        reset = rospy.ServiceProxy(self.face + "/reset", Trigger)
+        for _ in range(5):
+            self.call(reset)
+            deadline = time.monotonic() + 1
+            while time.monotonic() < deadline:
+                if all(message and message.header.stamp == start for message in self.outputs.values()):
+                    return
+                time.sleep(0.002)
+
     def run(self, bag, rate, output):
         names = ["%s/%s" % (self.face, topic) for topic in INPUTS]
         # rosbag record stores the names of topics as they were given, with or without the slash in front.
@@ -91,7 +102,7 @@ class Replay:
             sys.exit("replay_bag: the bag has no message on any of " + " ".join(names))
         start = commands[0][0]
         self.set_clock(start)
-        self.call(rospy.ServiceProxy(self.face + "/reset", Trigger))
+        self.reset(start)
         frames = sent = 0
         while sent < len(commands):
             frames += 1

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -87,6 +88,21 @@ TEST(Reactions, come_from_poses_over_time)
     EXPECT_EQ(table, first) << way[0];
   }
   EXPECT_EQ(run_program({ "run", folder / "bar.vtkhdf", "--demo", "--expression", "shorten" }).code, 2);
+}
+
+TEST(Bake, says_where_loads_act)
+{
+  const TemporaryFolder folder;
+  const std::string scene = folder / "box.yaml";
+  std::ofstream(scene) << text_of(std::string(FRONTALIS_SOURCE_DIRECTORY) + "/test/ros/small.yaml") << R"(
+loads:
+  - {name: press, pressure: 100 Pa, surface: bar}
+  - {name: pull, displacement: [0, 0, 1], surface: bar, within: 0.5, crop: {upper: [null, null, -13]}}
+)";
+  const ProgramResult baked = run_program({ "bake", scene, "-o", folder / "box.vtkhdf", "--report" });
+  ASSERT_EQ(baked.code, 0) << baked.errors;
+  expect_contains(baked.output, "load     press: pressure on 14 cm2\n");
+  expect_contains(baked.output, "load     pull: displacement of 9 nodes\n");  // of the lower end
 }
 
 }  // namespace

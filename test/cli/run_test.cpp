@@ -371,21 +371,6 @@ TEST(RunScene, baked_first_it_moves_the_same)
   EXPECT_EQ(text_of(model), text_of(folder / "again.vtkhdf"));
 }
 
-TEST(RunScene, says_where_its_loads_act)
-{
-  const TemporaryFolder folder;
-  const std::string scene = folder / "box.yaml";
-  std::ofstream(scene) << text_of(std::string(FRONTALIS_SOURCE_DIRECTORY) + "/test/ros/small.yaml") << R"(
-loads:
-  - {name: press, pressure: 100 Pa, surface: bar}
-  - {name: pull, displacement: [0, 0, 1], surface: bar, within: 0.5, crop: {upper: [null, null, -13]}}
-)";
-  const ProgramResult baked = run_program({ "bake", scene, "-o", folder / "box.vtkhdf", "--report" });
-  ASSERT_EQ(baked.code, 0) << baked.errors;
-  expect_contains(baked.output, "load     press: pressure on 14 cm2\n");      // the whole box
-  expect_contains(baked.output, "load     pull: displacement of 9 nodes\n");  // of the lower end
-}
-
 TEST(RunScene, voxel_edge_is_taken_in_the_scenes_unit)
 {
   const TemporaryFolder folder;

@@ -38,8 +38,9 @@ class Brow(unittest.TestCase):
     def test_only_the_left_brow_goes_up_by_the_left_muscle(self):
         face = Face()
         face.wait_until_ready()
+        before = face.state.time
         self.assertTrue(face.reset().success)
-        wait(lambda: not any(face.state.activation), "rest")
+        wait(lambda: face.state.time < before and not any(face.state.activation), "rest")
         self.settle(face)
         rest = {name: face.height(name) for name in BROWS}
         face.command(frontalis_left=0.75)

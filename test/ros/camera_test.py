@@ -125,8 +125,7 @@ class Camera(unittest.TestCase):
         self.assertGreater(ahead["labels"].data.count(EYE), 300)
         self.assertGreater(pupil(ahead), 10)
         # the front of the ball on the line from the camera to its centre, 7 mm before the centre; the iris is at most 0.5 mm higher
-        self.frames.can_transform("camera_optical_frame", "face", rospy.Time(0), rospy.Duration(10))
-        centre = self.frames.lookup_transform("camera_optical_frame", "face/bone/eye_left", rospy.Time(0)).transform.translation
+        centre = self.frames.lookup_transform("camera_optical_frame", "face/bone/eye_left", rospy.Time(0), rospy.Duration(60)).transform.translation
         k = ahead["camera_info"].K
         pixel = round(k[5] + k[4] * centre.y / centre.z) * WIDTH + round(k[2] + k[0] * centre.x / centre.z)
         distance = math.sqrt(centre.x ** 2 + centre.y ** 2 + centre.z ** 2)

@@ -287,6 +287,7 @@ class Inputs(unittest.TestCase):
             for message in messages:
                 self.topics[topic].publish(message)
             wait(lambda t=topic, n=before + len(messages): self.refused(t) == n, "refusals on ~" + topic)
+            wait(lambda t=topic: any(t in text for text in self.warnings), "a warning on ~" + topic)
             # the first, and at most one per second for other reasons
             self.assertLessEqual(len([text for text in self.warnings if topic in text]), 2 + time.monotonic() - begin)
         self.assertIn("translations are in metres", self.face.diagnostic("latest refusal on ~bone_pose"))

@@ -34,15 +34,17 @@ class Scenes(unittest.TestCase):
     def setUp(self):
         self.face = Face()
         self.face.wait_until_ready()
+        self.assertTrue(self.face.pause(True).success)
         self.assertTrue(self.face.reset().success)
-        self.face.wait_for_frame(lambda: self.face.state.time < 1, "the reset")
+        self.face.wait_for_frame(lambda: self.face.state.time == 0, "the reset")
+        self.assertTrue(self.face.pause(False).success)
         self.load = rospy.ServiceProxy("/face/load_scene", LoadScene)
 
     def test_1_a_bad_scene_changes_nothing(self):
         self.face.command(frontalis_left=0.5)
         wait(lambda: abs(self.face.state.activation[0] - 0.5) < 1e-3, "the command")
         time = self.face.state.time
-        for scene, why in (("nowhere.yaml", "nowhere.yaml"), ("", ""), (FOLDER + "/scene/five_faults.yaml", "five_faults"),
+        for scene, why in (("nowhere.yaml", "nowhere.yaml"), ("", "found nothing"), (FOLDER + "/scene/five_faults.yaml", "five_faults"),
                            (FOLDER + "/ros/pair.vtkhdf", "pair.vtkhdf")):
             answer = self.load(scene=scene)
             self.assertFalse(answer.success)

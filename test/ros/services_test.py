@@ -13,7 +13,7 @@ from sensor_msgs.msg import JointState, PointCloud2
 from shape_msgs.msg import Mesh
 from visualization_msgs.msg import Marker
 
-from face import Face, wait
+from face import LIMIT, Face, wait
 
 
 class Services(unittest.TestCase):
@@ -63,7 +63,7 @@ class Services(unittest.TestCase):
         self.assertEqual(self.face.target(), {"lift": 0})
 
     def test_joint_states_and_expression_command_too(self):
-        joints = rospy.Publisher("/face/joint_states", JointState, queue_size=1)
+        joints = rospy.Publisher("/face/joint_states", JointState, queue_size=10)
         wait(joints.get_num_connections, "a connection")
         joints.publish(JointState(name=["lift"], position=[0.25]))
         wait(lambda: self.face.target() == {"lift": 0.25}, "the joint state")
@@ -123,7 +123,8 @@ class Services(unittest.TestCase):
         listener = rospy.Subscriber("/face/skin_field", PointCloud2, clouds.append)
         wait(lambda: listener.get_num_connections() > 0, "a connection")
         self.assertTrue(self.face.step(0.5).success)
-        wait(lambda: clouds, "a field")
+        # rospy counts a connection before it stands
+        wait(lambda: self.face.step(0.02).success and clouds, "a field")
         listener.unregister()
         cloud = clouds[-1]
         strain = [struct.unpack_from("<7f", cloud.data, v * cloud.point_step)[6] for v in range(cloud.width)]
@@ -160,9 +161,9 @@ class Services(unittest.TestCase):
         wait(lambda: self.face.target() == {"lift": 0.1}, "a good command after bad ones")
 
     def test_skin_messages_agree_with_each_other(self):
-        mesh = rospy.wait_for_message("/face/skin_topology", Mesh, 30)
-        marker = rospy.wait_for_message("/face/skin", Marker, 30)
-        cloud = rospy.wait_for_message("/face/skin_points", PointCloud2, 30)
+        mesh = rospy.wait_for_message("/face/skin_topology", Mesh, LIMIT)
+        marker = rospy.wait_for_message("/face/skin", Marker, LIMIT)
+        cloud = rospy.wait_for_message("/face/skin_points", PointCloud2, LIMIT)
         self.assertEqual(marker.header.frame_id, "face")
         self.assertEqual(cloud.header.frame_id, "face")
         self.assertEqual(cloud.width, len(mesh.vertices))

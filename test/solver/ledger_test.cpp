@@ -135,6 +135,7 @@ TEST_P(Ledger, closes_for_an_end_that_is_pulled_and_a_side_that_is_pressed)
   const auto solver = accounting(model);
   const EnergyLedger ledger = play(*solver, {}, 0.05, 5);
   EXPECT_GT(ledger["constraint"], 0);
+  EXPECT_GT(ledger["damping"], 0);
   EXPECT_GT(ledger["load"], 0);
 }
 

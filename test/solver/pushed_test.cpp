@@ -99,6 +99,49 @@ TEST_P(BodiesTouch, work_goes_over_to_a_body_that_is_pushed)
   EXPECT_NEAR(mechanical(solver->ledger()), initial - gained, 0.02 * initial);
 }
 
+// A body brings in the energy of its force, and what it has already.
+TEST_P(BodiesTouch, the_guard_leaves_a_body_alone_that_is_pushed)
+{
+  for (const double spring : { 0.0, 20.0 })
+  {
+    Model made = block_and_pushed_finger(10e-3, spring, 0);
+    made.contacts[0].force = { { 0, 0, -0.1 } };
+    const auto model = std::make_shared<const Model>(made);
+    const auto solver = make_solver(model, { GetParam(), 2 });
+    GuardSettings settings;
+    settings.interval = 64;
+    Guard guard(*solver, model, settings);
+    for (int part = 0; part < 8; ++part)
+      guard.advance(5e-3, solver->controls());
+    EXPECT_GT(guard.counts().checks, 8);
+    EXPECT_EQ(guard.counts().rollbacks, 0) << words_for(guard.counts().latest);
+    EXPECT_GT(guard.latest().bodies, 0);
+  }
+}
+
+// A finger moves beside a thumb that rests.
+TEST_P(BodiesTouch, the_guard_knows_each_of_two_bones_that_touch_the_same_tissue)
+{
+  Model made = block_and_finger(0);
+  made.bones.push_back("thumb");
+  Contact thumb = touching_side(made, true, sphere_field({ { 4e-3, 4e-3, 13e-3 } }, 4e-3));
+  thumb.bone = 2;
+  made.contacts.push_back(thumb);
+  const auto model = std::make_shared<const Model>(made);
+  const auto solver = make_solver(model, { GetParam(), 2 });
+  GuardSettings settings;
+  settings.interval = 64;
+  Guard guard(*solver, model, settings);
+  Controls controls = solver->controls();
+  for (int part = 1; part <= 4; ++part)
+  {
+    controls.bone[1] = rigid_motion({ { 0, 0, 0 } }, { { 0, 0, -0.4e-3 * part } });
+    guard.advance(5e-3, controls);
+  }
+  EXPECT_EQ(guard.counts().rollbacks, 0) << words_for(guard.counts().latest);
+  EXPECT_GT(std::abs(solver->reactions()[0].force[2]), 1e-3);
+}
+
 // An effect that is switched off forgets: the body is back at its bone, at rest.
 TEST_P(BodiesTouch, a_pushed_body_starts_anew_when_contact_is_switched_on)
 {

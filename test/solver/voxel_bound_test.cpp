@@ -58,6 +58,7 @@ struct Tissue
   double poisson;
   physics::MaterialNumbers own;  // nonzero parameters replace those of the block's material
   double allowed;
+  double least = 0.9;  // of the worst ratio: smaller ones are far too careful
 };
 constexpr double mu = 34e3 / 2.98;
 
@@ -84,7 +85,7 @@ TEST_P(TimeStepBound, holds_for_a_deformed_voxel)
   for (int i = 0; i < 120; ++i)
     worst = std::max(worst, true_over_bound(model, random_gradient(random, i % 2 == 0 ? 1.3 : 2, i)));
   EXPECT_LT(worst, tissue.allowed);
-  EXPECT_GT(worst, 0.9) << "far too careful";
+  EXPECT_GT(worst, tissue.least) << "far too careful";
 }
 
 TEST(FibreBound, holds_for_fibres_that_are_stretched_and_pressed)
@@ -121,8 +122,15 @@ INSTANTIATE_TEST_SUITE_P(
         Tissue{ "neo_hookean_nearly_incompressible", Law::neo_hookean, 0.4999, {}, 1.01 },
         Tissue{ "mooney_rivlin", law_of<physics::MooneyRivlin>, 0.49, { 0.25 * mu, 0, 0.25 * mu }, 1.01 },
         Tissue{ "ogden", law_of<physics::Ogden>, 0.49, { 0.5 * mu, 0, 2, -0.25 * mu, -4 }, 1.01 },
+        Tissue{ "ogden_of_skin", law_of<physics::Ogden>, 0.49, { mu / 7, 0, 14, 0.01 * mu, 2 }, 1.02 },
         Tissue{ "fung", law_of<physics::FungExponential>, 0.49, { 0, 0, 4 }, 1.02 },
         Tissue{ "holzapfel", law_of<physics::HolzapfelGasserOgden>, 0.49, { mu, 0, mu, 5, 0, 1, 0, 0, 0, 1, 0 }, 1.02 },
+        Tissue{ "fibrous",
+                law_of<physics::HolzapfelGasserOgden>,
+                0.45,
+                { mu, 0, 50 * mu, 0.5, 0, 1, 0, 0, 0, 1, 0 },
+                1.15,
+                0.7 },
         Tissue{ "guccione", law_of<physics::Guccione>, 0.49, { 0.25 * mu, 0, 8, 2, 4, 1, 0, 0 }, 1.01 }),
     [](const auto& of) { return of.param.name; });
 

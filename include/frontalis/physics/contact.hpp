@@ -74,7 +74,8 @@ FRONTALIS_LAW Vec3<T> push(const FieldValue<T>& field, const T& stiffness)
 ///
 /// The normal force is that of push(). Friction is the tangential stiffness times the displacement from the anchor,
 /// returned to Coulomb's cone (Simo & Laursen, An augmented Lagrangian treatment of contact problems involving
-/// friction, Computers & Structures 42(1), 1992).
+/// friction, Computers & Structures 42(1), 1992). The anchor follows the point along the normal, because a change of
+/// depth would become a tangential displacement, and create energy, as the normal turns.
 template <class T>
 FRONTALIS_LAW Touch<T> touch(const FieldValue<T>& field, const Vec3<T>& x, const Grip<T>& grip, const T& stiffness,
                              const T& friction, const T& response)
@@ -85,19 +86,17 @@ FRONTALIS_LAW Touch<T> touch(const FieldValue<T>& field, const Vec3<T>& x, const
   const T normal_force = grip.normal + response * (pressed * slope - grip.normal);
   const Vec3<T> normal = (T(1) / N::max(slope, N::of(1e-9))) * field.gradient;
   const Vec3<T> way = x - grip.anchor;
-  const Vec3<T> along = way - dot(normal, way) * normal;
+  const Vec3<T> sunk = dot(normal, way) * normal, along = way - sunk;
   const T along_stiffness = N::of(sticking_stiffness) * stiffness;
   const T length = norm(along), trial = along_stiffness * length;
   const T allowed = mutation::no_friction ? N::of(0) : friction * normal_force;
   const auto slips = trial > allowed;
   const T kept = N::select(slips, allowed / N::max(trial, N::of(1e-30)), N::of(1));
   const Vec3<T> left = kept * along;
-  const Vec3<T> moved = x - left;
+  // A sum of displacements, so that rounding does not move the anchor of a point that rests.
+  const Vec3<T> anchor = grip.anchor + (sunk + (along - left));
   return { push(field, stiffness) - along_stiffness * left,
-           { { N::select(slips, moved.x, grip.anchor.x), N::select(slips, moved.y, grip.anchor.y),
-               N::select(slips, moved.z, grip.anchor.z) },
-             normal_force,
-             kept * trial },
+           { anchor, normal_force, kept * trial },
            N::of(0.5) * (pressed * depth + along_stiffness * dot(left, left)),
            N::of(0.5) * (grip.along + kept * trial) * (length - kept * length) };
 }

@@ -48,6 +48,14 @@ FRONTALIS_LAW PushedMotion<T> moved_on(const PushedBody<T>& body, const PushedMo
   return after;
 }
 
+/// Kinetic energy of the body, and energy of its spring [J].
+template <class T>
+FRONTALIS_LAW T energy(const PushedBody<T>& body, const PushedMotion<T>& motion)
+{
+  const Vec3<T> stretched = motion.centre - motion.held_at;
+  return T(0.5) * (body.mass * dot(motion.velocity, motion.velocity) + body.spring * dot(stretched, stretched));
+}
+
 /// Begins a step of length `dt` [s]. `before`: length of the previous step; 0: there was none.
 template <class T>
 FRONTALIS_LAW void begin_step(PushedMotion<T>& motion, const T& before, const T& dt)

@@ -9,8 +9,9 @@ namespace physics
 
 /// Bound of the largest eigenvalue [N/m] of the stiffness of a box voxel with one-point quadrature, at rest, for a
 /// volume of tissue [m3]. With d_j = 1/h_j^2 its stress modes have the eigenvalues V/2 eig(lambda sqrt(d) sqrt(d)^T +
-/// 2 mu diag(d)) <= V/2 (lambda sum d + 2 mu max d), exact on cubes. `along_fibre` [Pa] is stiffness that fibres add in
-/// one direction.
+/// 2 mu diag(d)) <= V/2 (max(lambda, 0) sum d + 2 mu max d), exact on cubes if lambda is not negative. It is negative
+/// where `mu` is a bound that counts taut fibres as if they ran in all directions. `along_fibre` [Pa] is stiffness that
+/// fibres add in one direction.
 ///
 /// The bounds of all voxels together limit the highest frequency of the model. With k_e >= the largest eigenvalue of
 /// the stiffness K_e of voxel e, and lumped masses m_n,
@@ -27,7 +28,7 @@ FRONTALIS_LAW T voxel_stiffness(T mu, T kappa, T along_fibre, T volume, T hx, T 
   using N = Number<T>;
   const T dx = N::of(1) / (hx * hx), dy = N::of(1) / (hy * hy), dz = N::of(1) / (hz * hz);
   const T largest = N::max(dx, N::max(dy, dz));
-  const T lambda = kappa - N::of(2.0 / 3.0) * mu;
+  const T lambda = N::max(kappa - N::of(2.0 / 3.0) * mu, N::of(0));
   return N::of(0.5) * volume * (lambda * (dx + dy + dz) + (N::of(2) * mu + along_fibre) * largest);
 }
 

@@ -78,13 +78,14 @@ public:
 /// keeps a snapshot; otherwise it goes back to the last good snapshot and takes shorter steps for a while.
 ///
 /// Energy is judged by a bound if there is no ledger. Let E be the kinetic, internal and hourglass energy at the last
-/// good check. At a time t later the energy may be at most twice (sqrt(E + W) + t sqrt(sum of f^2 / (2 m)))^2. Here f
-/// is gravity and surface loads on a node of mass m, and W is the sum of
-/// - the energy of a strain of 1e-4 everywhere;
+/// good check, with the energy of bodies that are pushed. At a time t later the energy may be at most twice
+/// (sqrt(E + W) + t sqrt(sum of f^2 / (2 m)))^2. Here f is gravity and surface loads on a node of mass m, or the force
+/// on a pushed body of this mass, and W is the sum of
+/// - the energy of a strain of 1e-4 everywhere, and what shells store at rest;
 /// - the work that fibres can do: active tension times volume times 1.2, the range of stretch in which they pull, plus
 /// 0.3 times tension times volume if they have a passive part;
 /// - four times the bound of the stiffness of the voxels at bones and prescribed nodes times d^2, where d is the length
-/// of the paths of these bones and nodes in the time t;
+/// of the paths of these bones and nodes in the time t, and half of a pushed body's spring times d^2 of its bone;
 /// - the energy that viscous stresses can give back.
 class Guard
 {

@@ -17,7 +17,7 @@ namespace frontalis
 
 /// Increased whenever the same model and controls give a different motion (other steps, other laws), or Solver::pack()
 /// gives different bytes. Stored motions of another generation are refused.
-constexpr int motion_generation = 29;
+constexpr int motion_generation = 30;
 
 /// A name of backend_names(): "auto" (the GPU if there is one, else the CPU), "reference" (double precision, plain
 /// loops; slow, but tests compare the others with it), "cpu" (SIMD, all cores), "cuda".
@@ -138,7 +138,7 @@ public:
   virtual void set_displacements(const std::vector<std::array<double, 3>>& in) = 0;
   /// Sets nodal velocities [m/s]; for tests and studies.
   virtual void set_velocities(const std::vector<std::array<double, 3>>& in) = 0;
-  /// Internal forces [N] at the present displacements, before constraints; of shells and contact on a CPU alone.
+  /// Internal forces [N] at the present displacements, before constraints.
   virtual void internal_forces(std::vector<std::array<double, 3>>& out) = 0;
 
   virtual std::string description() const = 0;  ///< backend, instruction set or device, threads

@@ -34,6 +34,7 @@ struct Monitor
   double kinetic = 0;
   double internal = 0;  ///< elastic strain energy of the materials, without fibres and hourglass control
   double hourglass = 0;
+  double bodies = 0;          ///< kinetic energy of pushed bodies, and energy of their springs
   double worst_jacobian = 1;  ///< smallest J = det F of a voxel
   std::int32_t worst_voxel = -1;
   std::int64_t inverted = 0;         ///< voxels with J <= 0

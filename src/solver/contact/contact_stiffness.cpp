@@ -71,7 +71,12 @@ ContactStiffness::ContactStiffness(const Model& model, const Discretisation& dis
     }
   }
   for (const Contact& contact : model.contacts)
+  {
     add(contact.binding, contact.area, per_area, counted(contact));
+    const bool pushed = contact.mass > 0;
+    supplies_.push_back({ contact.bone, &contact.binding, pushed ? contact.spring : 0,
+                          pushed ? norm(vector_of(contact.force)) / std::sqrt(2 * contact.mass) : 0 });
+  }
   for (const SelfContact& contact : model.self_contacts)
     add(contact.binding, vertex_areas(contact.surface), per_area, 2);
   const std::vector<double> asked = rows(model, true);

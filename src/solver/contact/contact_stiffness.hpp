@@ -31,6 +31,7 @@ public:
 
   /// Longest stable step of bodies that are pushed [s].
   double longest_step() const override { return longest_step_; }
+  std::vector<EnergySupply> supplies() const override { return supplies_; }
 
 private:
   struct Surface
@@ -49,6 +50,7 @@ private:
   std::vector<Surface> surfaces_;  // surfaces of Model::contacts, then those of Model::self_contacts
   std::size_t bodies_;
   std::vector<float> voxels_;  // [N/m]
+  std::vector<EnergySupply> supplies_;
   double longest_step_ = std::numeric_limits<double>::infinity();
 };
 

@@ -20,6 +20,11 @@ physics::PushedBody<double> pushed_body(const Contact& contact)
   return { contact.mass, contact.spring, contact.damping, vector_of(contact.force) };
 }
 
+double energy_of(const Contact& contact, const physics::PushedMotion<double>& motion)
+{
+  return contact.mass > 0 && motion.dt > 0 ? physics::energy(pushed_body(contact), motion) : 0;
+}
+
 RigidTransform pushed_pose(const Contact& contact, const physics::PushedMotion<double>& motion,
                            const std::vector<RigidTransform>& bones)
 {

@@ -25,6 +25,9 @@ physics::Vec3<double> held_centre(const Contact& contact, const std::vector<Rigi
 /// The law of motion of a body that is pushed.
 physics::PushedBody<double> pushed_body(const Contact& contact);
 
+/// Kinetic energy of a body and energy of its spring [J]; 0 if it is not pushed.
+double energy_of(const Contact& contact, const physics::PushedMotion<double>& motion);
+
 /// Pose of a body that is pushed, which turns with its bone. `motion`: of the body at the same time as `bones`.
 RigidTransform pushed_pose(const Contact& contact, const physics::PushedMotion<double>& motion,
                            const std::vector<RigidTransform>& bones);

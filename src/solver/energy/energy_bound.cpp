@@ -26,12 +26,32 @@ EnergyBound::EnergyBound(const Model& model) : model_(model), fibres_(model.musc
   const Discretisation discretisation(model);
   viscous_ = discretisation.viscous_terms > 0;
 
-  // For each node, the index of the bone that drives it, or the number of bones plus the index of the load that drives
-  // it.
+  // For each node, the indices of the bones that drive it, and the number of bones plus the indices of the loads that
+  // do so.
   const auto bones = static_cast<std::int32_t>(model.bones.size());
-  std::vector<std::int32_t> driver = moving_bones(model);
+  std::vector<std::vector<std::int32_t>> drivers(model.nodes.size());
+  const auto drive = [&](std::int32_t node, std::int32_t driver)
+  {
+    auto& of_node = drivers[static_cast<std::size_t>(node)];
+    if (driver >= 0 && std::find(of_node.begin(), of_node.end(), driver) == of_node.end())
+      of_node.push_back(driver);
+  };
+  const std::vector<std::int32_t> bone = moving_bones(model);
+  for (std::size_t n = 0; n < bone.size(); ++n)
+    drive(static_cast<std::int32_t>(n), bone[n]);
+  std::vector<EnergySupply> supplies;
+  for (const auto& effect : discretisation.added)
+  {
+    stored_ += effect->energy_at_rest();
+    const std::vector<EnergySupply> more = effect->supplies();
+    supplies.insert(supplies.end(), more.begin(), more.end());
+  }
+  for (const EnergySupply& body : supplies)
+    for (const std::int32_t e : body.bound->voxel)
+      for (const std::int32_t node : model.voxel_nodes[static_cast<std::size_t>(e)])
+        drive(node, body.bone);
   for (const auto& node : model.prescribed)
-    driver[node.node] = bones + node.load;
+    drive(node.node, bones + node.load);
   std::vector<double> stiffness(model.bones.size() + model.loads.size(), 0);
 
   const double shortest = *std::min_element(model.spacing.begin(), model.spacing.end());
@@ -46,11 +66,12 @@ EnergyBound::EnergyBound(const Model& model) : model_(model), fibres_(model.musc
           double(model.fibre_weight[f]) * voxel.tissue_volume * model.muscles[model.fibre_muscle[f]].stress_reference;
     std::vector<std::int32_t> seen;
     for (const auto node : model.voxel_nodes[e])
-      if (driver[node] >= 0 && std::find(seen.begin(), seen.end(), driver[node]) == seen.end())
-      {
-        seen.push_back(driver[node]);
-        stiffness[driver[node]] += own;
-      }
+      for (const std::int32_t driver : drivers[static_cast<std::size_t>(node)])
+        if (std::find(seen.begin(), seen.end(), driver) == seen.end())
+        {
+          seen.push_back(driver);
+          stiffness[static_cast<std::size_t>(driver)] += own;
+        }
   }
   for (std::int32_t d = 0; d < static_cast<std::int32_t>(stiffness.size()); ++d)
     if (stiffness[d] > 0)
@@ -82,6 +103,12 @@ EnergyBound::EnergyBound(const Model& model) : model_(model), fibres_(model.musc
     return std::sqrt(pressed);
   };
   push_ = std::sqrt(squared) + push_beyond(std::vector<std::array<double, 3>>(ramped.size()));
+  for (const EnergySupply& body : supplies)
+  {
+    push_ += body.push;
+    if (body.spring > 0 && body.bone >= 0)
+      bones_.push_back({ body.bone, body.spring });
+  }
   for (const Load& load : model.loads)
     if (load.activation >= 0)
     {
@@ -94,7 +121,7 @@ EnergyBound::EnergyBound(const Model& model) : model_(model), fibres_(model.musc
 
 double EnergyBound::most(const Interval& interval) const
 {
-  double given = floor_ + (viscous_ ? interval.largest_internal : 0);
+  double given = floor_ + stored_ + (viscous_ ? interval.largest_internal : 0);
   for (std::size_t m = 0; m < fibres_.size(); ++m)
     given += fibres_[m] *
              (active_stretch * double(interval.activation[m]) + (model_.muscles[m].passive ? passive_stretch : 0.0));

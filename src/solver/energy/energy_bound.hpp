@@ -17,7 +17,7 @@ public:
   /// A part of the motion, and the inputs that may have driven it.
   struct Interval
   {
-    double energy = 0;              ///< energy at the start of the interval [J]
+    double energy = 0;              ///< energy at the start of the interval, with that of pushed bodies [J]
     double begin = 0, end = 0;      ///< [s]
     std::vector<float> activation;  ///< largest activation of each muscle
     std::vector<double> bone_way;   ///< length of each bone's path [m]
@@ -40,6 +40,7 @@ private:
   double push_ = 0;
   std::vector<std::pair<std::int32_t, double>> activated_push_;
   double floor_ = 0;
+  double stored_ = 0;  // energy that effects store at rest [J]
   bool viscous_ = false;
   std::vector<double> fibres_;  // one per muscle: tension times volume [J]
   std::vector<Driven> bones_, prescribed_;

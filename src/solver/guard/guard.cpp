@@ -69,7 +69,7 @@ struct Guard::Implementation
   bool settling = false;
   GuardCounts counts;
 
-  double energy(const Monitor& m) const { return m.kinetic + m.internal + m.hourglass; }
+  double energy(const Monitor& m) const { return m.kinetic + m.internal + m.hourglass + m.bodies; }
   std::int64_t steps() const { return solver.profile().steps; }
   bool check_is_due() const
   {
@@ -241,15 +241,15 @@ InstabilityReport Guard::Implementation::examined(Instability finding, const Con
   // voxel is the stiffest.
   std::int32_t voxel =
       !(worst.worst_jacobian >= crushed) || worst.stiffest_voxel < 0 ? worst.worst_voxel : worst.stiffest_voxel;
-  double strayed = 0;
+  LostNode lost;
   if (finding == Instability::past_rim)
   {
     voxel = voxel_at(worst.lost_node);
     NodalVectors displacements;
     solver.displacements(displacements);
-    strayed = distance_from_rest(*model, worst.lost_node, displacements, solver.controls().bone);
+    lost = { worst.lost_node, distance_from_rest(*model, worst.lost_node, displacements, solver.controls().bone) };
   }
-  return describe(*model, finding, time, std::max(voxel, 0), worst.worst_jacobian, activation, moved, strayed);
+  return describe(*model, finding, time, std::max(voxel, 0), worst.worst_jacobian, activation, moved, lost);
 }
 
 Guard::Guard(Solver& solver, std::shared_ptr<const Model> model, const GuardSettings& settings)

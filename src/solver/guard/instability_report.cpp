@@ -1,6 +1,7 @@
 #include "solver/guard/instability_report.hpp"
 
 #include "frontalis/model/sample_field.hpp"
+#include "frontalis/physics/materials/lookup.hpp"
 
 #include <fmt/ranges.h>
 
@@ -38,7 +39,7 @@ struct Cause
 
 Cause cause_of(const Model& model, Instability kind, std::int32_t e, const std::vector<std::int32_t>& materials,
                const std::vector<std::int32_t>& fibres, const std::vector<float>& activation,
-               const std::vector<bool>& moved, double strayed)
+               const std::vector<bool>& moved, const LostNode& lost)
 {
   if (kind == Instability::time_step)
     return { "the time step", "lower accuracy's time_step_share" };
@@ -47,14 +48,15 @@ Cause cause_of(const Model& model, Instability kind, std::int32_t e, const std::
                                     ? "set hourglass: assumed_strain, or take smaller voxels"
                                     : "set integration: selective_reduced, or take smaller voxels" };
   const auto& corners = model.voxel_nodes[e];
-  const auto sliding = held(model.sliding, corners);
   if (kind == Instability::past_rim)
   {
+    const auto sliding = std::find_if(model.sliding.begin(), model.sliding.end(),
+                                      [&](const auto& entry) { return entry.node == lost.node; });
     const std::string& surface = model.constraint_surfaces[sliding->surface].name;
-    if (strayed > usual_travel)
+    if (lost.strayed > usual_travel)
       return { fmt::format(
                    "sliding on surface {}, {:.1f} mm away from where its nodes rest (it is known up to {:g} mm)",
-                   surface, 1e3 * strayed, 1e3 * usual_travel),
+                   surface, 1e3 * lost.strayed, 1e3 * usual_travel),
                "hold the tissue nearby, or let muscles, loads and bones move it less" };
     return { "sliding past the rim of surface " + surface,
              "continue the surface beyond the tissue, or hold the tissue near its rim" };
@@ -71,7 +73,8 @@ Cause cause_of(const Model& model, Instability kind, std::int32_t e, const std::
   double soft = 1e300, stiff = 0;
   for (const auto m : materials)
   {
-    const double shear = model.materials[model.mixture_material[m]].parameters[0];
+    const Material& material = model.materials[model.mixture_material[m]];
+    const double shear = physics::shear_modulus_of(material.law, material.parameters);
     soft = std::min(soft, shear);
     stiff = std::max(stiff, shear);
   }
@@ -84,7 +87,7 @@ Cause cause_of(const Model& model, Instability kind, std::int32_t e, const std::
                "lower its stress_reference or activation, or let it rise more slowly (time's activation_slew, the "
                "muscle's rise_time)" };
   }
-  if (sliding != model.sliding.end())
+  if (const auto sliding = held(model.sliding, corners); sliding != model.sliding.end())
     return { "sliding on surface " + model.constraint_surfaces[sliding->surface].name,
              "smooth the surface there, or take smaller voxels" };
   for (const auto& load : model.loads)
@@ -118,7 +121,7 @@ std::string words_for(Instability instability)
 }
 
 InstabilityReport describe(const Model& model, Instability kind, double time, std::int32_t voxel, double jacobian,
-                           const std::vector<float>& activation, const std::vector<bool>& moved, double strayed)
+                           const std::vector<float>& activation, const std::vector<bool>& moved, const LostNode& lost)
 {
   InstabilityReport report;
   report.kind = kind;
@@ -144,7 +147,7 @@ InstabilityReport describe(const Model& model, Instability kind, double time, st
     report.material.push_back(model.materials[model.mixture_material[m]].name);
   for (const auto f : fibres)
     report.muscle.push_back(model.muscles[model.fibre_muscle[f]].name);
-  const Cause cause = cause_of(model, kind, voxel, materials, fibres, activation, moved, strayed);
+  const Cause cause = cause_of(model, kind, voxel, materials, fibres, activation, moved, lost);
   report.effect = cause.effect;
   report.advice = cause.advice;
   return report;

@@ -1,6 +1,7 @@
 #include "frontalis/solver/shell_mesh.hpp"
 
 #include "frontalis/physics/hourglass.hpp"
+#include "frontalis/physics/materials/lookup.hpp"
 #include "frontalis/physics/trilinear.hpp"
 #include "solver/contact/body_motion.hpp"
 #include "solver/shell/moment_balance.hpp"
@@ -77,7 +78,8 @@ void ShellMesh::add(const Model& model, const Shell& shell)
     for (std::size_t i = 0; i < 3; ++i)
       opposite[{ t[(i + 1) % 3], t[(i + 2) % 3] }] = t[i];
   const Material& material = model.materials[shell.material];
-  const double mu = shear_at_rest(material), young = physics::young_modulus(mu, material.parameters[1]);
+  const double mu = physics::shear_modulus_of(material.law, material.parameters),
+               young = physics::young_modulus(mu, material.parameters[1]);
   const double poisson = young / (2 * mu) - 1;
   const std::vector<Vector> carried = carried_vertices(model, shell);
   std::vector<BentTriangle> bent;

@@ -25,6 +25,18 @@ ShellStiffness::ShellStiffness(const Model& model, const Discretisation& discret
   share_rows(model, rows, of_voxels, voxels_);
 }
 
+double ShellStiffness::energy_at_rest() const
+{
+  const physics::Vec3<double> none[6]{};
+  double sum = 0;
+  for (const ShellMesh::Triangle& t : mesh_.triangles)
+  {
+    const auto at_rest = physics::shell_forces(t.rest, none);
+    sum += at_rest.membrane + at_rest.bending;
+  }
+  return sum;
+}
+
 std::vector<PointStiffness> ShellStiffness::matrices() const
 {
   PointStiffness matrix{ &mesh_.binding, {} };

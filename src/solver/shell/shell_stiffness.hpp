@@ -19,6 +19,7 @@ public:
   /// An upper bound of the shells' stiffness. Each triangle has the stiffness of its stiffest direction in all
   /// directions; in addition, each of its vertices has a spring that is stiffer than the triangle in bending.
   std::vector<PointStiffness> matrices() const override;
+  double energy_at_rest() const override;
 
 private:
   ShellMesh mesh_;

@@ -24,7 +24,17 @@ struct PointStiffness
   std::vector<Entry> entries;
 };
 
-/// Stiffness that an effect adds to that of voxels, for the bound of the highest frequency.
+/// A body that brings energy to tissue.
+struct EnergySupply
+{
+  std::int32_t bone;     ///< that moves the body; -1: none
+  const Binding* bound;  ///< points that may touch it
+  double spring;         ///< between bone and body [N/m]; 0: none
+  double push;           ///< root of f^2 / (2 m), of the force on the body and its mass [sqrt(J)/s]
+};
+
+/// Stiffness that an effect adds to that of voxels, for the bound of the highest frequency, and the energy that the
+/// effect can supply.
 class AddedStiffness
 {
 public:
@@ -38,6 +48,9 @@ public:
   /// Increases the stiffness where this does not raise the bound of the highest frequency, because nodes elsewhere
   /// determine the bound. Call it once the masses and the bound are known.
   virtual void stiffen(const Model& /*model*/, const Discretisation& /*discretisation*/) {}
+  /// Energy that the effect stores at rest [J], such as that of creases.
+  virtual double energy_at_rest() const { return 0; }
+  virtual std::vector<EnergySupply> supplies() const { return {}; }
   /// Longest stable step of masses that are not nodes [s].
   virtual double longest_step() const { return std::numeric_limits<double>::infinity(); }
 

@@ -75,17 +75,6 @@ physics::Kinematics<double> at_rest()
   return physics::kinematics(none, none, none, scale);
 }
 
-}  // namespace
-
-double shear_at_rest(const Material& material)
-{
-  return material.law == Law::neo_hookean ? material.parameters[0]
-                                          : law_stiffness(material.law, material.parameters.data(), at_rest());
-}
-
-namespace
-{
-
 bool contains_any(const Model& model, std::size_t voxel, const std::vector<std::int32_t>& materials)
 {
   for (auto m = model.mixture_begin[voxel]; m < model.mixture_begin[voxel + 1]; ++m)
@@ -119,7 +108,7 @@ void mix_viscosity(const Model& model, std::size_t voxel, VoxelProperties& out)
   for (auto m = model.mixture_begin[voxel]; m < model.mixture_begin[voxel + 1]; ++m)
   {
     const Material& material = model.materials[model.mixture_material[m]];
-    const double part = model.mixture_proportion[m] * shear_at_rest(material);
+    const double part = model.mixture_proportion[m] * physics::shear_modulus_of(material.law, material.parameters);
     stiffness += part;
     for (std::size_t term = 0; term < 2; ++term)
       if (material.viscous_share[term] > 0)
@@ -307,11 +296,13 @@ void Discretisation::mix(std::size_t e, VoxelProperties& out) const
     out.density += proportion * material.density;
   }
   out.stiffening = out.mu > 0 ? out.stiffening / out.mu : 0;
-  double shear = out.mu;
+  // Hourglass control acts in all directions and must not be as stiff as taut fibres.
+  double shear = out.mu, taut = out.mu;
   for (auto& part : out.laws)
   {
     part.stiffness_at_rest = law_stiffness(part.law, part.parameters.data(), at_rest());
-    shear += part.weight * part.stiffness_at_rest;
+    taut += part.weight * part.stiffness_at_rest;
+    shear += part.weight * physics::shear_modulus_of(part.law, part.parameters);
   }
   if (!(shear > 0 && out.kappa > 0 && out.density > 0 && model.fill[e] > 0))
     throw Error(fmt::format("voxel {}: shear modulus, bulk modulus, density and fill must be positive", e));
@@ -321,7 +312,7 @@ void Discretisation::mix(std::size_t e, VoxelProperties& out) const
     part.per_tangent = part.weight * out.tissue_volume / (shortest * shortest);
   out.hourglass = physics::hourglass_stiffness(physics::young_modulus(shear, out.kappa), out.tissue_volume,
                                                std::max({ h[0], h[1], h[2] }));
-  if (const double modes = physics::voxel_stiffness(shear, out.kappa, 0.0, out.tissue_volume, h[0], h[1], h[2]);
+  if (const double modes = physics::voxel_stiffness(taut, out.kappa, 0.0, out.tissue_volume, h[0], h[1], h[2]);
       least_hourglass_ > 0)
     out.hourglass = std::max(out.hourglass, sliver_hourglass(double(model.fill[e]), least_hourglass_, modes));
   if (assumed_strain)
@@ -331,7 +322,7 @@ void Discretisation::mix(std::size_t e, VoxelProperties& out) const
   }
   else if (selective_reduced)
     out.hourglass = 0;
-  out.stiffness = physics::voxel_stiffness(shear, out.kappa, fibre_stiffness(model, e, running_), out.tissue_volume,
+  out.stiffness = physics::voxel_stiffness(taut, out.kappa, fibre_stiffness(model, e, running_), out.tissue_volume,
                                            h[0], h[1], h[2]);
   for (const auto& stiffness : added)
     out.stiffness += stiffness->in_voxel(e);

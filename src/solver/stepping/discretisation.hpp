@@ -49,9 +49,6 @@ struct VoxelProperties
   std::array<double, 2> viscous_rate{};
 };
 
-/// Shear stiffness of a material at rest [Pa].
-double shear_at_rest(const Material& material);
-
 /// The properties of a model that every backend needs, in double precision. Properties of a voxel are computed on
 /// request, because each backend stores them in a form of its own.
 class Discretisation

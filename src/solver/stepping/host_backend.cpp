@@ -141,6 +141,15 @@ std::int64_t HostBackend<Real, Relaxed>::lost_points() const
 }
 
 template <class Real, class Relaxed>
+double HostBackend<Real, Relaxed>::body_energy() const
+{
+  double sum = 0;
+  for (const auto& part : parts_)
+    sum += part->body_energy();
+  return sum;
+}
+
+template <class Real, class Relaxed>
 void HostBackend<Real, Relaxed>::save(std::unique_ptr<BackendState>& to)
 {
   if (!to)

@@ -46,6 +46,7 @@ public:
   std::vector<Reaction> reactions() const override;
   std::vector<RigidTransform> bodies() const override;
   std::int64_t lost_points() const override;
+  double body_energy() const override;
   void internal_forces(NodalVectors& out) override;
   double highest_frequency_squared() override;
   std::vector<FoundMode> modes_above(double frequency_squared) override

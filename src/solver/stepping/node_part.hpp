@@ -103,8 +103,9 @@ public:
   virtual std::vector<Reaction> reactions() const { return {}; }
   /// Present poses of the bodies of reactions(), from those of the bones.
   virtual std::vector<RigidTransform> bodies(const std::vector<RigidTransform>& /*bones*/) const { return {}; }
-  /// Value of Monitor::lost_points.
+  /// Values of Monitor::lost_points and Monitor::bodies.
   virtual std::int64_t lost_points() const { return 0; }
+  virtual double body_energy() const { return 0; }
 };
 
 }  // namespace frontalis

@@ -103,8 +103,9 @@ public:
   /// See NodePart::add_energies.
   virtual void add_energies(bool /*open*/, NodalVectors& /*forces*/, EnergyLedger& /*ledger*/) {}
   virtual std::vector<Reaction> reactions() const { return {}; }
-  /// Value of Monitor::lost_points.
+  /// Values of Monitor::lost_points and Monitor::bodies.
   virtual std::int64_t lost_points() const { return 0; }
+  virtual double body_energy() const { return 0; }
   /// Present poses of the bodies of reactions(). The pose of a pushed body differs from its bone's.
   virtual std::vector<RigidTransform> bodies() const { return {}; }
   virtual void skin(SkinState& out) = 0;

@@ -343,6 +343,7 @@ Monitor TimeStepper::monitor()
   result.critical_time_step = controller_.critical_step_at(4 / (result.critical_time_step * result.critical_time_step));
   result.step_share = motion_.latest_step / result.critical_time_step;
   result.lost_points = backend_->lost_points();
+  result.bodies = backend_->body_energy();
   result.added_mass = mass_in_motion_.proportion(motion_.added);
   if (result.finite && slides())
   {

@@ -124,7 +124,7 @@ TEST_F(Panel, MovesTheFaceAndShowsIt)
 
   left->setValue(700);
   EXPECT_TRUE(reaches(0.7, 0.7));
-  EXPECT_EQ(right->value(), 700);
+  EXPECT_TRUE(run_until([&] { return right->value() == 700; }));
   locked->setChecked(false);
   right->setValue(200);
   EXPECT_TRUE(reaches(0.7, 0.2));

@@ -79,9 +79,12 @@ struct NodeWork
 FRONTALIS_LAW NodeWork node_work(double before, double free, double after, double beside, double beside_before,
                                  double damping, double kick)
 {
-  const double mean = 0.5 * (before + after), half = 0.5 * damping * kick;
-  const double damped = half * free + (1 - (1 + half) * kept_velocity(half)) * before;
-  return { mean * damped, mean * (after - free) - (free - before + damped) * 0.5 * (beside + beside_before) / kick };
+  const double mean = 0.5 * (before + after), half = 0.5 * damping * kick,
+               from_before = (1 - (1 + half) * kept_velocity(half)) * before;
+  // The other forces changed `free`; damping acts on the velocities that the node had.
+  const double others = free - before + half * free + from_before;
+  return { mean * (half * after + from_before),
+           mean * (1 + half) * (after - free) - others * 0.5 * (beside + beside_before) / kick };
 }
 
 }  // namespace physics

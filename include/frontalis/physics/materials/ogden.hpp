@@ -121,7 +121,8 @@ FRONTALIS_LAW T energy(const Ogden<T>& material, const Kinematics<T>& k)
   return sum;
 }
 
-/// Bound of the tangent shear stiffness [Pa] of the stiffest principal direction.
+/// Bound of the tangent shear stiffness [Pa]. In principal directions the second derivative of a term's energy is that
+/// of a power, on the diagonal, without its mean, plus the stress mu (trace / 3 - x_a).
 template <class T>
 FRONTALIS_LAW T tangent_stiffness(const Ogden<T>& material, const Kinematics<T>& k)
 {
@@ -129,16 +130,21 @@ FRONTALIS_LAW T tangent_stiffness(const Ogden<T>& material, const Kinematics<T>&
   const T g = isochoric_scale(k.J).value;
   const SymmetricEigen<T> eigen = symmetric_eigen(right_cauchy_green(k.F));
   const T shift = eigenvalue_shift(k.J).value;
-  T largest = N::of(0);
+  T c[3];
   for (int a = 0; a < 3; ++a)
+    c[a] = N::max(eigen.value[a] + shift, N::of(1e-6));
+  T sum = N::of(0);
+  for (const auto& term : terms_of(material))
   {
-    const T c = N::max(eigen.value[a] + shift, N::of(1e-6));
-    T sum = N::of(0);
-    for (const auto& term : terms_of(material))
-      sum = sum + N::of(0.5) * N::max(term.mu * term.alpha, N::of(0)) * N::exp(N::of(0.5) * term.alpha * N::log(g * c));
-    largest = N::max(largest, sum / c);
+    T x[3];
+    for (int a = 0; a < 3; ++a)
+      x[a] = N::exp(N::of(0.5) * term.alpha * N::log(g * c[a]));
+    const T most = N::max(x[0], N::max(x[1], x[2])), least = N::min(x[0], N::min(x[1], x[2]));
+    const T mean = N::of(1.0 / 3.0) * (x[0] + x[1] + x[2]);
+    sum =
+        sum + N::max(term.mu * term.alpha, N::of(0)) * most + N::max(term.mu * (mean - least), term.mu * (mean - most));
   }
-  return largest;
+  return N::of(0.5) * sum / N::min(c[0], N::min(c[1], c[2]));
 }
 
 }  // namespace frontalis::physics
