@@ -394,15 +394,6 @@ void BodyContact<Real>::add_energies(const Real* const u[3], const std::vector<R
   ledger["friction"] += now.lost - opened_[0].lost;
 }
 
-template <class Real>
-double BodyContact<Real>::body_energy() const
-{
-  double sum = 0;
-  for (std::size_t b = 0; b < bodies_.size(); ++b)
-    sum += energy_of(model_.contacts[b], bodies_[b]);
-  return sum;
-}
-
 template class BodyContact<float>;
 template class BodyContact<double>;
 

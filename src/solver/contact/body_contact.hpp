@@ -42,7 +42,13 @@ public:
                     std::vector<std::array<double, 3>>& forces, EnergyLedger& ledger) override;
   std::vector<Reaction> reactions() const override;
   std::vector<RigidTransform> bodies(const std::vector<RigidTransform>& bones) const override;
-  double body_energy() const override;
+  double body_energy() const override
+  {
+    double sum = 0;
+    for (std::size_t b = 0; b < bodies_.size(); ++b)
+      sum += energy_of(model_.contacts[b], bodies_[b]);
+    return sum;
+  }
   std::int64_t lost_points() const override { return std::count(touches_.begin(), touches_.end(), Touching::lost); }
 
   // The following types and functions are for a backend that keeps the points in its own memory and finds their forces
