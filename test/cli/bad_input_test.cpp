@@ -58,7 +58,8 @@ TEST(Bake, interrupted_leaves_no_file_and_130)
   // use job control (set -m), because a shell's background processes otherwise ignore interrupts
   std::ofstream(script) << "set -m\nstdbuf -o0 '" << FRONTALIS_PROGRAM << "' bake '" << scene << "' --voxel 0.4 -o '"
                         << model << "' > '" << log << "' 2>&1 &\npid=$!\nuntil grep -q voxels '" << log
-                        << "' || ! kill -0 $pid; do sleep 0.02; done\nkill -INT $pid\nwait $pid\necho $? > '" << log << ".code'\n";
+                        << "' || ! kill -0 $pid; do sleep 0.02; done\nkill -INT $pid\nwait $pid\necho $? > '" << log
+                        << ".code'\n";
   ASSERT_EQ(std::system(("bash '" + script + "'").c_str()), 0);
   EXPECT_EQ(text_of(log + ".code"), "130\n");
   expect_contains(text_of(log), "interrupted\n");
