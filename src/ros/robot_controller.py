@@ -81,6 +81,9 @@ class Controller:
         self.frames = tf2_ros.Buffer()
         self.listener = tf2_ros.TransformListener(self.frames)
         parents = {joint.find("child").get("link"): joint.find("parent").get("link") for joint in robot.findall("joint")}
+        # the bone that follows a link, by default the one of the same name
+        frames = rospy.get_param(face + "/bone_frames", {})
+        bones = {frame["frame"] if isinstance(frame, dict) else frame: bone for bone, frame in frames.items()}
         for link in parents:
             behind, end = [], link
             while link:
@@ -89,7 +92,7 @@ class Controller:
             for joint in behind:
                 joint.efforts[end] = 0.0
             if behind:
-                rospy.Subscriber("%s/wrench/%s" % (face, end), WrenchStamped, self.take_wrench, (end, behind), queue_size=1)
+                rospy.Subscriber("%s/wrench/%s" % (face, bones.get(end, end)), WrenchStamped, self.take_wrench, (end, behind), queue_size=1)
         rospy.Subscriber("~command", JointTrajectory, self.take_trajectory, queue_size=10)
         rospy.Subscriber("~pose", String, self.take_pose, queue_size=10)
 

@@ -79,9 +79,11 @@ class Fit(unittest.TestCase):
         with tempfile.NamedTemporaryFile("w", suffix=".csv") as table:
             table.write("time,lift,jaw.x\n0,0,1\n0.2,0.6,1\n0.4,0.3,1\n")
             table.flush()
+            before = self.face.list_muscles().messages
             played = subprocess.run([PLAYER, table.name, "/face"], capture_output=True, check=True, text=True)
         self.assertIn("left out: jaw.x", played.stderr)
-        self.face.step(0.4)
+        wait(lambda: self.face.list_muscles().messages > before, "the trajectory")
+        self.assertTrue(self.face.step(0.4).success)
         wait(lambda: abs(self.face.target()["lift"] - 0.3) < 1e-6, "the end of the table")
 
     def test_can_be_cancelled(self):

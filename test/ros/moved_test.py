@@ -31,9 +31,10 @@ class Moved(unittest.TestCase):
         self.rest = self.face.place("tip")
 
     def send(self, *messages):
+        before = self.face.list_muscles().messages
         for message in messages:
             self.poses.publish(message)
-        rospy.sleep(0.2)  # time in which most messages arrive
+        wait(lambda: self.face.list_muscles().messages == before + len(messages), "the poses")
 
     def step_until_tip_at(self, place, within):
         """Steps until the tip rests at a place [m]. It takes more than one step if a pose arrives late."""
