@@ -28,12 +28,33 @@ Model block_with_skin()
   return model;
 }
 
+// The same with a muscle along z.
+Model block_with_muscle()
+{
+  Model model = block_with_skin();
+  Muscle muscle;
+  muscle.name = "pull";
+  muscle.stress_reference = 10e3;
+  test::add_muscle(model, { { 0, 0, 1 } }, muscle);
+  return model;
+}
+
 std::vector<std::array<double, 3>> stretched(const Model& model, double stretch)
 {
   std::vector<std::array<double, 3>> u;
   for (std::size_t n = 0; n < model.nodes.size(); ++n)
     u.push_back({ { 0, 0, (stretch - 1) * test::rest(model, n)[2] } });
   return u;
+}
+
+// Activates the muscle, whose tissue keeps its shape.
+void pull(Solver& solver, const Model& model)
+{
+  Controls controls = solver.controls();
+  controls.activation[0] = 1;
+  solver.advance(0, controls);
+  solver.advance(solver.time_step(), controls);
+  solver.set_displacements(stretched(model, 1));
 }
 
 std::size_t bytes_of_fields(const Solver& solver)
@@ -68,17 +89,9 @@ TEST_P(SkinFields, are_those_of_a_uniform_stretch)
 
 TEST_P(SkinFields, have_the_stress_of_fibres_that_pull)
 {
-  Model model = block_with_skin();
-  Muscle muscle;
-  muscle.name = "pull";
-  muscle.stress_reference = 10e3;
-  test::add_muscle(model, { { 0, 0, 1 } }, muscle);
+  const Model model = block_with_muscle();
   const auto solver = this->solver(model);
-  Controls controls = solver->controls();
-  controls.activation[0] = 1;
-  solver->advance(0, controls);
-  solver->advance(solver->time_step(), controls);
-  solver->set_displacements(stretched(model, 1));
+  pull(*solver, model);
   std::vector<float> field;
   solver->skin_field(SkinField::stress, field);
   for (const float stress : field)
@@ -92,11 +105,7 @@ TEST_P(SkinFields, have_the_stress_of_fibres_that_pull)
 // The block's z axis is the face's x axis.
 TEST_P(SkinFields, have_a_tissue_below_them_whose_state_is_in_the_face_frame)
 {
-  Model model = block_with_skin();
-  Muscle muscle;
-  muscle.name = "pull";
-  muscle.stress_reference = 10e3;
-  test::add_muscle(model, { { 0, 0, 1 } }, muscle);
+  Model model = block_with_muscle();
   model.to_face.rotation = { { 0, 0, 1, 1, 0, 0, 0, 1, 0 } };
   model.to_face.translation = { { 0.1, 0, 0 } };
   const auto solver = this->solver(model);
@@ -133,17 +142,9 @@ TEST_P(SkinFields, have_a_tissue_below_them_whose_state_is_in_the_face_frame)
 
 TEST_P(SkinFields, show_the_pull_of_fibres_inside_the_tissue)
 {
-  Model model = block_with_skin();
-  Muscle muscle;
-  muscle.name = "pull";
-  muscle.stress_reference = 10e3;
-  test::add_muscle(model, { { 0, 0, 1 } }, muscle);
+  const Model model = block_with_muscle();
   const auto solver = this->solver(model);
-  Controls controls = solver->controls();
-  controls.activation[0] = 1;
-  solver->advance(0, controls);
-  solver->advance(solver->time_step(), controls);
-  solver->set_displacements(stretched(model, 1));
+  pull(*solver, model);
   TissueReader reader(model);
   TissueState state;
   reader.read(*solver, state);
