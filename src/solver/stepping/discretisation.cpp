@@ -296,13 +296,11 @@ void Discretisation::mix(std::size_t e, VoxelProperties& out) const
     out.density += proportion * material.density;
   }
   out.stiffening = out.mu > 0 ? out.stiffening / out.mu : 0;
-  // Hourglass control acts in all directions and must not be as stiff as taut fibres.
-  double shear = out.mu, taut = out.mu;
+  double shear = out.mu;
   for (auto& part : out.laws)
   {
     part.stiffness_at_rest = law_stiffness(part.law, part.parameters.data(), at_rest());
-    taut += part.weight * part.stiffness_at_rest;
-    shear += part.weight * physics::shear_modulus_of(part.law, part.parameters);
+    shear += part.weight * part.stiffness_at_rest;
   }
   if (!(shear > 0 && out.kappa > 0 && out.density > 0 && model.fill[e] > 0))
     throw Error(fmt::format("voxel {}: shear modulus, bulk modulus, density and fill must be positive", e));
@@ -312,7 +310,7 @@ void Discretisation::mix(std::size_t e, VoxelProperties& out) const
     part.per_tangent = part.weight * out.tissue_volume / (shortest * shortest);
   out.hourglass = physics::hourglass_stiffness(physics::young_modulus(shear, out.kappa), out.tissue_volume,
                                                std::max({ h[0], h[1], h[2] }));
-  if (const double modes = physics::voxel_stiffness(taut, out.kappa, 0.0, out.tissue_volume, h[0], h[1], h[2]);
+  if (const double modes = physics::voxel_stiffness(shear, out.kappa, 0.0, out.tissue_volume, h[0], h[1], h[2]);
       least_hourglass_ > 0)
     out.hourglass = std::max(out.hourglass, sliver_hourglass(double(model.fill[e]), least_hourglass_, modes));
   if (assumed_strain)
@@ -322,7 +320,7 @@ void Discretisation::mix(std::size_t e, VoxelProperties& out) const
   }
   else if (selective_reduced)
     out.hourglass = 0;
-  out.stiffness = physics::voxel_stiffness(taut, out.kappa, fibre_stiffness(model, e, running_), out.tissue_volume,
+  out.stiffness = physics::voxel_stiffness(shear, out.kappa, fibre_stiffness(model, e, running_), out.tissue_volume,
                                            h[0], h[1], h[2]);
   for (const auto& stiffness : added)
     out.stiffness += stiffness->in_voxel(e);
