@@ -47,9 +47,6 @@ std::string vtp_of(const SkinState& skin, const SkinState& rest, const Triangles
   for (std::size_t v = 0; v < displacements.size(); ++v)
     for (std::size_t axis = 0; axis < 3; ++axis)
       displacements[v][axis] -= rest.vertices[v][axis];
-  std::vector<std::int32_t> ends(triangles.size());
-  for (std::size_t t = 0; t < ends.size(); ++t)
-    ends[t] = static_cast<std::int32_t>(3 * (t + 1));
   VtkFile file("PolyData",
                fmt::format("NumberOfPoints=\"{}\" NumberOfPolys=\"{}\"", skin.vertices.size(), triangles.size()));
   file.begin("PointData", "Normals=\"normals\" Vectors=\"displacement\"");
@@ -61,7 +58,6 @@ std::string vtp_of(const SkinState& skin, const SkinState& rest, const Triangles
   file.add("points", skin.vertices);
   file.begin("Polys");
   file.add_corners(triangles);
-  file.add("offsets", ends);
   return file.text();
 }
 
@@ -81,12 +77,11 @@ std::string vtu_of(const TissueState& tissue, const MainParts& parts, const Mode
   constexpr std::array<std::size_t, 8> corner_of_hexahedron{ { 0, 1, 3, 2, 4, 5, 7, 6 } };
   const std::size_t voxels = model.voxels.size();
   std::vector<std::array<std::int32_t, 8>> corners(voxels);
-  std::vector<std::int32_t> ends(voxels), muscle(voxels, -1);
+  std::vector<std::int32_t> muscle(voxels, -1);
   for (std::size_t e = 0; e < voxels; ++e)
   {
     for (std::size_t b = 0; b < 8; ++b)
       corners[e][b] = model.voxel_nodes[e][corner_of_hexahedron[b]];
-    ends[e] = static_cast<std::int32_t>(8 * (e + 1));
     if (parts.fibres[e] >= 0)
       muscle[e] = model.fibre_muscle[static_cast<std::size_t>(parts.fibres[e])];
   }
@@ -109,7 +104,6 @@ std::string vtu_of(const TissueState& tissue, const MainParts& parts, const Mode
   file.add("points", tissue.place);
   file.begin("Cells");
   file.add_corners(corners);
-  file.add("offsets", ends);
   file.add("types", std::vector<std::uint8_t>(voxels, hexahedron));
   return file.text();
 }

@@ -168,7 +168,8 @@ WrinkleSettings wrinkle_settings(const RunOptions& options, const Model& model)
   for (std::size_t i = 0; i < options.wrinkles_in.size(); ++i)
     (i < 2 ? settings.lower : settings.upper)[1 + i % 2] = 1e-3 * options.wrinkles_in[i];
   const std::vector<std::array<float, 3>> skin = rest_in_face(model).vertices;
-  if (std::none_of(skin.begin(), skin.end(), [&](const auto& vertex) { return settings.contains(vertex); }))
+  if (!options.wrinkles_in.empty() &&
+      std::none_of(skin.begin(), skin.end(), [&](const auto& vertex) { return settings.contains(vertex); }))
     throw Error(
         "--wrinkles-in: no skin lies there; must be two corners LEFT,UP,LEFT,UP in mm from the origin of the face "
         "frame");

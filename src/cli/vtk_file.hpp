@@ -40,11 +40,15 @@ public:
   {
     add(name, type_of(Number()), size, numbers);
   }
-  /// Adds the corners of cells, one cell after the other.
+  /// Adds the corners of cells, one cell after the other, and where those of each cell end.
   template <std::size_t size>
   void add_corners(const std::vector<std::array<std::int32_t, size>>& cells)
   {
     add("connectivity", type_of(std::int32_t()), 1, cells);
+    std::vector<std::int32_t> ends(cells.size());
+    for (std::size_t c = 0; c < ends.size(); ++c)
+      ends[c] = static_cast<std::int32_t>(size * (c + 1));
+    add("offsets", ends);
   }
   /// Ends the file and returns it.
   std::string text() const;

@@ -50,7 +50,8 @@ void WrinkleTopic::start(std::shared_ptr<const Model> model, const std::vector<d
   for (std::size_t i = 0; i < part.size(); ++i)
     (i < 2 ? face->settings.lower : face->settings.upper)[1 + i % 2] = part[i];
   const std::vector<std::array<float, 3>> skin = rest_in_face(*face->model).vertices;
-  if (std::none_of(skin.begin(), skin.end(), [&](const auto& vertex) { return face->settings.contains(vertex); }))
+  if (!part.empty() &&
+      std::none_of(skin.begin(), skin.end(), [&](const auto& vertex) { return face->settings.contains(vertex); }))
     ROS_WARN("~wrinkles_in: no skin lies there; must be two corners LEFT, UP, LEFT, UP in metres");
   const std::lock_guard<std::mutex> lock(mutex_);
   face_ = std::move(face);

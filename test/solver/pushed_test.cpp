@@ -130,13 +130,13 @@ TEST_P(BodiesTouch, the_guard_knows_each_of_two_bones_that_touch_the_same_tissue
   const auto model = std::make_shared<const Model>(made);
   const auto solver = make_solver(model, { GetParam(), 2 });
   GuardSettings settings;
-  settings.interval = 64;
+  settings.interval = 16;
   Guard guard(*solver, model, settings);
   Controls controls = solver->controls();
   for (int part = 1; part <= 4; ++part)
   {
     controls.bone[1] = rigid_motion({ { 0, 0, 0 } }, { { 0, 0, -0.4e-3 * part } });
-    guard.advance(5e-3, controls);
+    guard.advance(1e-3, controls);
   }
   EXPECT_EQ(guard.counts().rollbacks, 0) << words_for(guard.counts().latest);
   EXPECT_GT(std::abs(solver->reactions()[0].force[2]), 1e-3);

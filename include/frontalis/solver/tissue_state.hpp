@@ -21,8 +21,8 @@ struct TissueState
   std::vector<std::array<float, 6>> stress;  ///< Cauchy stress of materials and fibres [Pa], without viscous stresses
   std::vector<float> von_mises;              ///< of `stress` [Pa]
   std::vector<float> volume_ratio;           ///< J = det F [-]
-  std::vector<float>
-      fibre_stretch;  ///< present length / rest length, of the muscle with the largest share; 1 without muscle
+  /// present length of the fibres divided by that at rest, of the muscle with the largest share; 1 without muscle
+  std::vector<float> fibre_stretch;
 };
 
 /// Reads the state of a solver's tissue, in double precision on the host. Layers with `shell: true` are not part of the

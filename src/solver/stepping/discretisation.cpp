@@ -75,6 +75,17 @@ physics::Kinematics<double> at_rest()
   return physics::kinematics(none, none, none, scale);
 }
 
+}  // namespace
+
+double shear_at_rest(const Material& material)
+{
+  return material.law == Law::neo_hookean ? material.parameters[0]
+                                          : law_stiffness(material.law, material.parameters.data(), at_rest());
+}
+
+namespace
+{
+
 bool contains_any(const Model& model, std::size_t voxel, const std::vector<std::int32_t>& materials)
 {
   for (auto m = model.mixture_begin[voxel]; m < model.mixture_begin[voxel + 1]; ++m)

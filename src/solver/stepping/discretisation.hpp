@@ -49,6 +49,9 @@ struct VoxelProperties
   std::array<double, 2> viscous_rate{};
 };
 
+/// Bound of a material's tangent shear stiffness at rest [Pa], with fibres as if they were taut in all directions.
+double shear_at_rest(const Material& material);
+
 /// The properties of a model that every backend needs, in double precision. Properties of a voxel are computed on
 /// request, because each backend stores them in a form of its own.
 class Discretisation

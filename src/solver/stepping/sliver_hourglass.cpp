@@ -1,7 +1,6 @@
 #include "solver/stepping/sliver_hourglass.hpp"
 
 #include "frontalis/physics/hourglass.hpp"
-#include "frontalis/physics/materials/lookup.hpp"
 #include "frontalis/physics/time_step.hpp"
 #include "solver/stepping/discretisation.hpp"
 
@@ -19,11 +18,8 @@ double least_hourglass(const Model& model)
   const std::set<int> present(model.mixture_material.begin(), model.mixture_material.end());
   double young = std::numeric_limits<double>::infinity();
   for (const int m : present)
-  {
-    const Material& material = model.materials[static_cast<std::size_t>(m)];
-    young = std::min(young, physics::young_modulus(physics::shear_modulus_of(material.law, material.parameters),
-                                                   material.parameters[1]));
-  }
+    young = std::min(
+        young, physics::young_modulus(shear_at_rest(model.materials[m]), double(model.materials[m].parameters[1])));
   return 3 * physics::hourglass_stiffness(young, h[0] * h[1] * h[2], std::max({ h[0], h[1], h[2] }));
 }
 
