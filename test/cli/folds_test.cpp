@@ -32,7 +32,7 @@ std::string strip()
       replaced(text, "surfaces:\n", "surfaces:\n  sides: {shape: box, centre: [0, 19.5, 40], size: [400, 15, 400]}\n");
   text = replaced(text, "constraints:\n", "constraints:\n  - {name: sides, sliding: sides, within: 0.3}\n");
   text = replaced(text, ", frontalis_right: 0.75}", "}");
-  text = std::regex_replace(text, std::regex("stress_reference: 140 kPa"), "stress_reference: 70 kPa");
+  text = std::regex_replace(text, std::regex("stress_reference: 160 kPa"), "stress_reference: 75 kPa");
   const std::regex elsewhere("_right|corrugator|procerus|temples|glabella:|hairline:|brow_left: \\[");
   std::string kept;
   std::istringstream lines(text);
