@@ -17,7 +17,7 @@ namespace frontalis
 
 /// Increased whenever the same model and controls give a different motion (other steps, other laws), or Solver::pack()
 /// gives different bytes. Stored motions of another generation are refused.
-constexpr int motion_generation = 30;
+constexpr int motion_generation = 31;
 
 /// A name of backend_names(): "auto" (the GPU if there is one, else the CPU), "reference" (double precision, plain
 /// loops; slow, but tests compare the others with it), "cpu" (SIMD, all cores), "cuda".

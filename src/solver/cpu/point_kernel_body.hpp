@@ -1,6 +1,6 @@
 #pragma once
 
-#include "frontalis/physics/trilinear.hpp"
+#include "solver/cpu/bound_lanes.hpp"
 #include "solver/cpu/record_lanes.hpp"
 #include "solver/cpu/point_kernel.hpp"
 #include "solver/cpu/prefetch.hpp"
@@ -24,19 +24,8 @@ struct PointKernelBody
 
   static FRONTALIS_LAW Vector place(const Block& b, const float* const u[3], int lane)
   {
-    Batch weight[8];
-    physics::trilinear_weights(Lanes::load(b.coordinates[0] + lane), Lanes::load(b.coordinates[1] + lane),
-                               Lanes::load(b.coordinates[2] + lane), weight);
-    Vector p{ Lanes::load(b.rest[0] + lane), Lanes::load(b.rest[1] + lane), Lanes::load(b.rest[2] + lane) };
-    for (int two = 0; two < 4; ++two)
-    {
-      Vector low, high;
-      Lanes::gather_two(u[0], b.node[two] + lane, low.x, high.x);
-      Lanes::gather_two(u[1], b.node[two] + lane, low.y, high.y);
-      Lanes::gather_two(u[2], b.node[two] + lane, low.z, high.z);
-      p = p + weight[2 * two] * low + weight[2 * two + 1] * high;
-    }
-    return p;
+    const Vector rest{ Lanes::load(b.rest[0] + lane), Lanes::load(b.rest[1] + lane), Lanes::load(b.rest[2] + lane) };
+    return displaced<Lanes>(rest, b, u, lane);
   }
 
   // Position in the body's frame, relative to the origin of the body's field [spacings of its samples].

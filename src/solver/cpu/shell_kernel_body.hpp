@@ -1,6 +1,7 @@
 #pragma once
 
 #include "frontalis/physics/shell.hpp"
+#include "solver/cpu/bound_lanes.hpp"
 #include "solver/cpu/shell_kernel.hpp"
 
 #include <cstring>
@@ -41,13 +42,14 @@ struct ShellKernelBody
     return t;
   }
 
-  static void place(const WeightedSums<Real>& sums, const Real* const in[3], ShellVector<Real>* out, std::int32_t first,
-                    std::int32_t last)
+  static void place(const ShellVertices<Real>* blocks, const Real* const u[3], ShellVector<Real>* out,
+                    std::int32_t first, std::int32_t last)
   {
-    add(sums, out, first, last,
-        [in](std::int32_t n) -> ShellVector<Real> {
-          return { { in[0][n], in[1][n], in[2][n], 0 } };
-        });
+    const Batch none = physics::Number<Batch>::of(0);
+    for (auto block = first; block < last; ++block)
+      for (int lane = 0; lane < Block::width; lane += Lanes::count)
+        Lanes::store_records(displaced<Lanes>(Vector{ none, none, none }, blocks[block], u, lane),
+                             out[std::ptrdiff_t{ block } * Block::width + lane].x);
   }
 
   static void forces(const Block* blocks, const ShellVector<Real>* from, ShellVector<Real>* out, std::int32_t first,
@@ -71,21 +73,8 @@ struct ShellKernelBody
   static void sum(const WeightedSums<Real>& sums, const ShellVector<Real>* in, ShellVector<Real>* out,
                   std::int32_t first, std::int32_t last)
   {
-    add(sums, out, first, last, [in](std::int32_t i) -> const ShellVector<Real>& { return in[i]; });
-  }
-
-  static int place_of_lane(int lane) { return lane - lane % Lanes::count + Lanes::record(lane % Lanes::count) / 4; }
-
-  static ShellKernels<Real> all() { return { place, forces, sum, place_of_lane }; }
-
-private:
-  // A vector type of the compiler, because compilers do not find by themselves that four numbers fit into one register.
-  using Four [[gnu::vector_size(4 * sizeof(Real))]] = Real;
-
-  template <class Vectors>
-  static FRONTALIS_LAW void add(const WeightedSums<Real>& sums, ShellVector<Real>* out, std::int32_t first,
-                                std::int32_t last, const Vectors& vector)
-  {
+    // A vector type of the compiler, because compilers do not find by themselves that four numbers fit into a register.
+    using Four [[gnu::vector_size(4 * sizeof(Real))]] = Real;
     const auto* const terms = sums.terms.data();
     const auto* const begin = sums.begin.data();
     for (auto i = first; i < last; ++i)
@@ -97,8 +86,7 @@ private:
         FRONTALIS_UNROLL
         for (int k = 0; k < 4; ++k)
         {
-          const ShellVector<Real> v = vector(terms[t + k].index);
-          std::memcpy(&term[k], &v, sizeof v);
+          std::memcpy(&term[k], &in[terms[t + k].index], sizeof term[k]);
           term[k] *= terms[t + k].weight;
         }
         sum += (term[0] + term[1]) + (term[2] + term[3]);
@@ -106,6 +94,10 @@ private:
       std::memcpy(&out[i], &sum, sizeof sum);
     }
   }
+
+  static int place_of_lane(int lane) { return lane - lane % Lanes::count + Lanes::record(lane % Lanes::count) / 4; }
+
+  static ShellKernels<Real> all() { return { place, forces, sum, place_of_lane }; }
 };
 
 }  // namespace frontalis

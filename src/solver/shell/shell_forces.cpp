@@ -34,7 +34,6 @@ void set_lane(ShellBlock<Real>& block, std::size_t lane, const ShellMesh::Triang
   for (std::size_t i = 0; i < 6; ++i)
   {
     block.bending[i][lane] = there * static_cast<Real>(rest.bending[i]);
-    block.vertex[i][lane] = triangle.vertex[i];
   }
 }
 
@@ -55,18 +54,15 @@ ShellForces<Real>::ShellForces(const Model& model, const ShellKernels<Real>& ker
   if (binding.voxel.empty())
     return;
   plane_vertices_.assign(static_cast<std::size_t>(model.size[2]) + 2, 0);
-  std::vector<typename Sums::Terms> of_vertex(binding.voxel.size()), of_node(model.nodes.size());
-  for (std::size_t v = 0; v < of_vertex.size(); ++v)
+  std::vector<typename Sums::Terms> of_node(model.nodes.size());
+  for (std::size_t v = 0; v < binding.voxel.size(); ++v)
   {
     const auto& at = binding.coordinates[v];
     double weight[8];
     physics::trilinear_weights<double>(at[0], at[1], at[2], weight);
     for (std::size_t b = 0; b < 8; ++b)
-    {
-      const auto node = model.voxel_nodes[binding.voxel[v]][b];
-      of_vertex[v].push_back({ node, static_cast<Real>(weight[b]) });
-      of_node[node].push_back({ static_cast<std::int32_t>(v), static_cast<Real>(weight[b]) });
-    }
+      of_node[model.voxel_nodes[binding.voxel[v]][b]].push_back(
+          { static_cast<std::int32_t>(v), static_cast<Real>(weight[b]) });
     ++plane_vertices_[model.voxels[binding.voxel[v]][2] + 1];
   }
   std::partial_sum(plane_vertices_.begin(), plane_vertices_.end(), plane_vertices_.begin());
@@ -75,29 +71,47 @@ ShellForces<Real>::ShellForces(const Model& model, const ShellKernels<Real>& ker
       nodes_.push_back(static_cast<std::int32_t>(n));
   of_node.erase(std::remove_if(of_node.begin(), of_node.end(), [](const auto& terms) { return terms.empty(); }),
                 of_node.end());
-  place_ = Sums(of_vertex);
   on_node_ = Sums(of_node);
   add_blocks();
-  u_.resize(of_vertex.size());
+  u_.resize(vertices_.size() * Vertices::width);
+}
+
+template <class Real>
+std::int32_t ShellForces<Real>::place_of(std::size_t i) const
+{
+  const auto lane = static_cast<int>(i % Block::width);
+  return static_cast<std::int32_t>(i) - lane + kernels_.place_of_lane(lane);
 }
 
 template <class Real>
 void ShellForces<Real>::add_blocks()
 {
   constexpr std::size_t width = Block::width;
+  const Binding& binding = mesh_.binding;
+  vertices_.resize((binding.voxel.size() + width - 1) / width);
+  for (std::size_t p = 0; p < vertices_.size() * width; ++p)
+  {
+    const std::size_t lane = p % width, v = p < binding.voxel.size() ? p : p - lane;
+    Vertices& block = vertices_[p / width];
+    for (std::size_t two = 0; two < 4; ++two)
+      block.node[two][lane] = model_.voxel_nodes[binding.voxel[v]][2 * two];
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      block.coordinates[axis][lane] = Real(binding.coordinates[v][axis]);
+  }
   blocks_.resize((mesh_.triangles.size() + width - 1) / width);
   forces_.resize(blocks_.size() * 6 * width);
-  std::vector<typename Sums::Terms> of_vertex(mesh_.binding.voxel.size());
+  std::vector<typename Sums::Terms> of_vertex(binding.voxel.size());
   for (std::size_t t = 0; t < blocks_.size() * width; ++t)
   {
     const bool empty = t >= mesh_.triangles.size();
     const ShellMesh::Triangle& triangle = mesh_.triangles[empty ? 0 : t];
     set_lane(blocks_[t / width], t % width, triangle, empty);
-    for (std::size_t i = 0; i < 6 && !empty; ++i)
-      if (i < 3 || triangle.has_beyond(i - 3))
-        of_vertex[triangle.vertex[i]].push_back({ static_cast<std::int32_t>((t / width * 6 + i) * width) +
-                                                      kernels_.place_of_lane(static_cast<int>(t % width)),
-                                                  Real(1) });
+    for (std::size_t i = 0; i < 6; ++i)
+    {
+      blocks_[t / width].vertex[i][t % width] = place_of(triangle.vertex[i]);
+      if (!empty && (i < 3 || triangle.has_beyond(i - 3)))
+        of_vertex[triangle.vertex[i]].push_back({ place_of((t / width * 6 + i) * width + t % width), Real(1) });
+    }
   }
   on_vertex_ = Sums(of_vertex);
 }
@@ -110,9 +124,10 @@ void ShellForces<Real>::list_arrays(ArrayList& list)
   list.add(effect, "triangles", blocks_);
   list.add(effect, "vertices", mesh_.binding.voxel);
   list.add(effect, "vertices", mesh_.binding.coordinates);
+  list.add(effect, "vertices", vertices_);
   list.add(effect, "vertices", plane_vertices_);
   list.add(effect, "nodes", nodes_);
-  for (const Sums* const sums : { &place_, &on_vertex_, &on_node_ })
+  for (const Sums* const sums : { &on_vertex_, &on_node_ })
     if (!sums->terms.empty())
     {
       list.add(effect, "sums", sums->begin);
@@ -127,8 +142,8 @@ void ShellForces<Real>::prepare_step(const NodeShare& share, const Real* const u
 {
   if (share.thread == 0)
     work_.resize(static_cast<std::size_t>(share.threads));
-  const auto [first, last] = share_of(u_.size(), share);
-  kernels_.place(place_, u, u_.data(), first, last);
+  const auto [first, last] = share_of(vertices_.size(), share);
+  kernels_.place(vertices_.data(), u, u_.data(), first, last);
 }
 
 template <class Real>
@@ -142,7 +157,7 @@ template <class Real>
 void ShellForces<Real>::add_forces(const NodeShare& share, const ForceSink<Real>& sink)
 {
   Work& work = work_[share.thread];
-  work.on_vertex.resize(u_.size());
+  work.on_vertex.resize(mesh_.binding.voxel.size());
   work.on_node.resize(nodes_.size());
   kernels_.sum(on_vertex_, forces_.data(), work.on_vertex.data(), plane_vertices_[std::max(share.first_plane - 1, 0)],
                plane_vertices_[share.end_plane]);

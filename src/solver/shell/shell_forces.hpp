@@ -34,6 +34,7 @@ public:
 
 private:
   using Block = ShellBlock<Real>;
+  using Vertices = ShellVertices<Real>;
   using Sums = WeightedSums<Real>;
   using Vectors = std::vector<ShellVector<Real>>;
   // Forces on vertices and on nodes that one thread adds up [N].
@@ -42,21 +43,23 @@ private:
     Vectors on_vertex, on_node;
   };
 
+  // Where ShellKernels::place() and forces() write the vector of item i of a list.
+  std::int32_t place_of(std::size_t i) const;
   void add_blocks();
 
   const Model& model_;
   ShellMesh mesh_;
   ShellKernels<Real> kernels_;
   bool runs_ = true;
+  std::vector<Vertices> vertices_;
   std::vector<Block> blocks_;
   // first vertex in each plane of voxels; the last entry is the number of vertices
   std::vector<std::int32_t> plane_vertices_;
   std::vector<std::int32_t> nodes_;  // nodes that carry vertices, ascending
-  Sums place_;                       // displacements of vertices from those of nodes
   Sums on_vertex_;                   // forces on vertices from those of triangles
   Sums on_node_;                     // forces on nodes_ from those on vertices
   // Values of the present step:
-  Vectors u_;               // displacements of vertices [m]
+  Vectors u_;               // displacements of vertices, see ShellKernels [m]
   Vectors forces_;          // see ShellKernels [N]
   std::vector<Work> work_;  // one per thread
 };
