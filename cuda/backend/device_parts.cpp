@@ -40,7 +40,7 @@ PartRoom room_for_parts(const Model& model, const VoxelPatches& patches, const s
   if (all.room.contact_points > 0)
     all.threads = patches.most_voxels + all.room.contact_points;
   if (!model.shells.empty())
-    ShellTables(model, ShellMesh(model), patches, device_node).add_room(all);
+    ShellTables(model, ShellMesh(model), patches, device_node).add_room(patches.most_voxels, all);
   all.room.touch_vertices = most_touching_vertices(model, patches);
   // Pairs have threads of their own as far as possible. A patch has about as many pairs of its own vertices as of those
   // that they face, and a margin.
@@ -52,10 +52,10 @@ PartRoom room_for_parts(const Model& model, const VoxelPatches& patches, const s
 BoundWork bound_work(const Model& model)
 {
   // Cost of a point relative to a voxel without effects. It was chosen to minimise the wall time per step of the
-  // generated head.
-  constexpr float touch_cost = 2, pair_cost = 4;
+  // generated head, and for shells of the generated foreheads.
+  constexpr float touch_cost = 2, pair_cost = 4, shell_cost = 2;
   BoundWork work;
-  if (!model.contacts.empty() || !model.self_contacts.empty())
+  if (!model.contacts.empty() || !model.self_contacts.empty() || !model.shells.empty())
     work.cost.assign(model.voxels.size(), 0);
   for (const Contact& contact : model.contacts)
     for (std::size_t p = 0; p < contact.points.size(); ++p)
@@ -64,7 +64,12 @@ BoundWork bound_work(const Model& model)
     for (const std::int32_t voxel : contact.binding.voxel)
       work.cost[voxel] += pair_cost;
   if (!model.shells.empty())
-    work.beside = voxels_beside(model, ShellMesh(model));
+  {
+    const ShellMesh mesh(model);
+    work.beside = voxels_beside(model, mesh);
+    for (const auto voxel : mesh.binding.voxel)
+      work.cost[voxel] += shell_cost;
+  }
   return work;
 }
 

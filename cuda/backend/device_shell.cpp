@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstring>
 #include <numeric>
+#include <utility>
 
 namespace frontalis
 {
@@ -63,17 +64,18 @@ std::vector<float4> words_of(const ShellMesh& mesh, const std::vector<std::uint3
   return words;
 }
 
-// For each vertex whose displacement is computed, the indices of the x components of the triangles' forces on it
-// (shell_words describes the order).
+// For each vertex whose displacement is computed, the indices of the x components of the triangles' forces on it, which
+// are stored as [vertex][component][triangle]. `stride`: length of a row.
 std::vector<std::vector<std::uint32_t>> terms_of(const ShellMesh& mesh, const std::vector<std::uint32_t>& triangles,
-                                                 const std::vector<std::int32_t>& number, std::size_t vertices)
+                                                 const std::vector<std::int32_t>& number, std::size_t vertices,
+                                                 std::size_t stride)
 {
   std::vector<std::vector<std::uint32_t>> terms(vertices);
   const auto count = static_cast<std::uint32_t>(triangles.size());
   for (std::uint32_t t = 0; t < count; ++t)
     for (std::uint32_t i = 0; i < 6; ++i)
       if (const auto& triangle = mesh.triangles[triangles[t]]; i < 3 || triangle.has_beyond(i - 3))
-        terms[number[triangle.vertex[i]]].push_back(3 * i * count + t);
+        terms[number[triangle.vertex[i]]].push_back(static_cast<std::uint32_t>(3 * i * stride + t));
   return terms;
 }
 
@@ -85,6 +87,30 @@ void append(std::vector<uint4>& table, const std::vector<T>& values)
   table.resize(at + (bytes + sizeof(uint4) - 1) / sizeof(uint4), uint4{ 0, 0, 0, 0 });
   if (bytes > 0)
     std::memcpy(&table[at], values.data(), bytes);
+}
+
+// Number of threads that find forces of shells in a block, if the largest patches have so many voxels and triangles:
+// that with which the slower of both takes least time.
+std::uint32_t shell_threads(std::uint32_t voxels, std::uint32_t triangles)
+{
+  // Time that a thread takes for one of them, relative to each other. It was chosen to minimise the wall time per step
+  // of the generated foreheads.
+  constexpr std::uint32_t voxel_time = 3, triangle_time = 2;
+  const auto rounds = [](std::uint32_t items, std::uint32_t threads) { return (items + threads - 1) / threads; };
+  std::pair<std::uint32_t, std::uint32_t> least{ ~0u, 0 };
+  std::uint32_t best = 0;
+  for (std::uint32_t threads = 32; threads < most_patch_threads; threads += 32)
+  {
+    const std::uint32_t one = voxel_time * rounds(voxels, most_patch_threads - threads),
+                        other = triangle_time * rounds(triangles, threads);
+    const std::pair time(std::max(one, other), std::min(one, other));
+    if (time < least)
+    {
+      least = time;
+      best = threads;
+    }
+  }
+  return best;
 }
 
 }  // namespace
@@ -143,15 +169,16 @@ void ShellTables::add(const Model& model, const ShellMesh& mesh, const Around& a
     for (const auto v : mesh.triangles[t].vertex)
       add_vertex(v);
 
-  const auto terms = terms_of(mesh, triangles, number, vertices.size());
+  const auto terms = terms_of(mesh, triangles, number, vertices.size(), triangles.size() + 1);
+  const auto none = static_cast<std::uint16_t>(triangles.size());
   std::vector<float4> coordinates;
   std::vector<std::array<std::uint16_t, 8>> corners;
   std::vector<std::uint16_t> all_terms;
   for (std::size_t v = 0; v < vertices.size(); ++v)
   {
     // Vertices in voxels of other patches get no terms: some of the triangles around them are missing here.
-    const std::size_t count = v < own ? terms[v].size() : 0;
-    const auto sum = static_cast<std::uint32_t>(all_terms.size() | count << 20);
+    const std::size_t count = v < own ? (terms[v].size() + 3) / 4 : 0;
+    const auto sum = static_cast<std::uint32_t>(all_terms.size() / 4 | count << 20);
     const auto& at = binding.coordinates[vertices[v]];
     coordinates.push_back({ at[0], at[1], at[2], 0 });
     std::memcpy(&coordinates.back().w, &sum, sizeof sum);
@@ -159,8 +186,8 @@ void ShellTables::add(const Model& model, const ShellMesh& mesh, const Around& a
     const auto& nodes = model.voxel_nodes[binding.voxel[vertices[v]]];
     std::transform(nodes.begin(), nodes.end(), corners.back().begin(),
                    [&](auto n) { return static_cast<std::uint16_t>(cut.place_of(index, device_node[n])); });
-    for (std::size_t k = 0; k < count; ++k)
-      all_terms.push_back(static_cast<std::uint16_t>(terms[v][k]));
+    for (std::size_t k = 0; k < 4 * count; ++k)
+      all_terms.push_back(k < terms[v].size() ? static_cast<std::uint16_t>(terms[v][k]) : none);
   }
   const auto begin = static_cast<std::uint32_t>(tables.size());
   append(tables, coordinates);
@@ -168,23 +195,26 @@ void ShellTables::add(const Model& model, const ShellMesh& mesh, const Around& a
   append(tables, voxels);
   append(tables, all_terms);
   patches.push_back({ begin, static_cast<std::uint32_t>(tables.size()) - begin,
-                      static_cast<std::uint32_t>(vertices.size()), static_cast<std::uint32_t>(voxels.size()),
-                      static_cast<std::uint32_t>(triangles.size()), 0 });
+                      static_cast<std::uint32_t>(vertices.size()), static_cast<std::uint32_t>(own),
+                      static_cast<std::uint32_t>(voxels.size()), static_cast<std::uint32_t>(triangles.size()) });
   append(tables, words_of(mesh, triangles, number));
-  fits_indices_ = fits_indices_ && vertices.size() < 1u << 16 && 18 * triangles.size() < 1u << 16;
+  fits_indices_ = fits_indices_ && vertices.size() < 1u << 16 && 18 * (triangles.size() + 1) < 1u << 16;
 }
 
-void ShellTables::add_room(PartRoom& all) const
+void ShellTables::add_room(std::uint32_t most_voxels, PartRoom& all) const
 {
   std::vector<std::uint32_t> table(blocks_, 0), triangles(blocks_, 0);
+  std::uint32_t most = 0;
   for (std::size_t p = 0; p < patches.size(); ++p)
   {
     const PatchShell& patch = patches[p];
     table[p % blocks_] += patch.table_words;
     triangles[p % blocks_] += shell_words * patch.triangles;
-    all.room.shell_words = std::max(all.room.shell_words, patch.vertices + (18 * patch.triangles + 3) / 4);
-    all.threads = std::max(all.threads, patch.triangles);
+    all.room.shell_words = std::max(all.room.shell_words, patch.vertices + (18 * (patch.triangles + 1) + 3) / 4);
+    most = std::max(most, patch.triangles);
   }
+  all.room.shell_threads = shell_threads(most_voxels, most);
+  all.threads = std::max(all.threads, (most_voxels + 31) / 32 * 32 + all.room.shell_threads);
   all.room.table_words = *std::max_element(table.begin(), table.end());
   all.triangle_words = *std::max_element(triangles.begin(), triangles.end());
   all.fits_indices = all.fits_indices && fits_indices_;
@@ -214,7 +244,7 @@ void DeviceShell::add_to_strips(const std::vector<std::uint32_t>& device_node)
     coordinates.push_back({ at[0], at[1], at[2], 0 });
   std::vector<uint2> sums;
   std::vector<std::uint32_t> terms;
-  for (const auto& of_vertex : terms_of(mesh_, triangles, number, number.size()))
+  for (const auto& of_vertex : terms_of(mesh_, triangles, number, number.size(), triangles.size()))
   {
     sums.push_back({ static_cast<std::uint32_t>(terms.size()), static_cast<std::uint32_t>(of_vertex.size()) });
     terms.insert(terms.end(), of_vertex.begin(), of_vertex.end());

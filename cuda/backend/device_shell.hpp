@@ -21,8 +21,8 @@ public:
   ShellTables(const Model& model, const ShellMesh& mesh, const VoxelPatches& cut,
               const std::vector<std::uint32_t>& device_node);
 
-  /// Adds the shared memory and threads that the shells need in a block.
-  void add_room(PartRoom& all) const;
+  /// Adds the shared memory and threads that the shells need in a block. `most_voxels`: see VoxelPatches.
+  void add_room(std::uint32_t most_voxels, PartRoom& all) const;
 
   std::vector<PatchShell> patches;
   std::vector<uint4> tables;
@@ -43,7 +43,7 @@ public:
   DeviceShell(const Model& model, const VoxelCut& cut, const std::vector<std::uint32_t>& device_node);
 
   bool idle() const override { return !runs_; }
-  Effects effects() const override { return of_nodes | Effects::contact | Effects::shell; }
+  Effects effects() const override { return of_nodes | Effects::shell; }
   void describe(StepArguments& g) const override;
   void list_arrays(ArrayList& list) override;
   void run(EffectSet running) override { runs_ = running.has(Effect::shell); }

@@ -22,7 +22,7 @@ const void* kernel(Effects effects)
     return (effects & (Effects::contact | Effects::shell)) == Effects::none ? touch_patch_kernel(effects)
                                                                             : whole_patch_kernel(effects);
   if ((effects & Effects::shell) == Effects::shell)
-    return shell_patch_kernel(effects);
+    return (effects & Effects::contact) == Effects::none ? shell_patch_kernel(effects) : whole_patch_kernel(effects);
   if ((effects & Effects::contact) == Effects::contact)
     return contact_patch_kernel(effects);
   if ((effects & Effects::friction) == Effects::friction)

@@ -252,7 +252,10 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
       const auto fetch = [&](std::uint32_t v) {
         return is_plain(v) ? fetch_voxel<plain>(g, patch.voxel_begin + v) : fetch_voxel<With>(g, patch.voxel_begin + v);
       };
-      if (threadIdx.x < patch.voxels)
+      // threads that compute voxels; the others find forces of shells
+      const std::uint32_t workers = threads - (has<With, Effects::shell> ? shell.threads : 0);
+      const bool works = threadIdx.x < workers;
+      if (works && threadIdx.x < patch.voxels)
         voxel = fetch(threadIdx.x);
       for (std::uint32_t h = threadIdx.x; h < patch.halo; h += threads)
       {
@@ -264,11 +267,11 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
       __syncthreads();
       if (has<With, Effects::contact>)
         look_at_watched(g, contact, memory, watch);
-      if (has<With, Effects::shell>)
-        place_shell(shell, memory);
       if (has<With, Effects::touch>)
         place_touch(g, touch, memory);
-      for (std::uint32_t v = threadIdx.x; v < patch.voxels; v += threads)
+      if (has<With, Effects::shell> && !works)
+        find_shell(g, shell, memory);
+      for (std::uint32_t v = threadIdx.x; works && v < patch.voxels; v += workers)
       {
         if (v != threadIdx.x)
           voxel = fetch(v);
@@ -283,7 +286,7 @@ __global__ void __launch_bounds__(most_patch_threads, 1)
         find_touch(g, touch, memory);
       end_voxels<With>(g, contact, watch, memory, step, memory.least + round, until[turn]);
       if (has<With, Effects::shell>)
-        add_shell(g, shell, memory);
+        add_shell(shell, memory);
       if (has<With, Effects::touch>)
         add_touch(g, touch, memory);
       const bool last = step + 1 == g.step_end;

@@ -31,7 +31,7 @@ __global__ void __launch_bounds__(block) find_forces(const ShellTriangles triang
   wait_for_kernel_before();
   const std::uint32_t t = blockIdx.x * block + threadIdx.x;
   if (t < triangles.count)
-    put_shell_forces(triangles, t, moved, forces);
+    put_shell_forces(triangles, t, moved, forces, triangles.count);
 }
 
 __global__ void __launch_bounds__(block)

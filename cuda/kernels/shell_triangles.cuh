@@ -26,9 +26,10 @@ __device__ __forceinline__ void shell_spring_forces(const physics::ShellTriangle
   force[2] = force[2] - on_b;
 }
 
-/// Finds the forces of a triangle on its vertices and stores them in `forces`. `moved`: displacements of vertices.
+/// Finds the forces of a triangle on its vertices and stores them in `forces`, whose rows have the length `stride`.
+/// `moved`: displacements of vertices.
 __device__ __forceinline__ void put_shell_forces(const ShellTriangles& all, std::uint32_t t, const float4* moved,
-                                                 float* forces)
+                                                 float* forces, std::uint32_t stride)
 {
   float word[4 * shell_words];
 #pragma unroll
@@ -58,17 +59,17 @@ __device__ __forceinline__ void put_shell_forces(const ShellTriangles& all, std:
 #pragma unroll
   for (std::uint32_t i = 0; i < 6; ++i)
   {
-    float* const to = forces + 3 * i * std::size_t(all.count) + t;
+    float* const to = forces + 3 * i * std::size_t(stride) + t;
     to[0] = reaction.force[i].x;
-    to[all.count] = reaction.force[i].y;
-    to[2 * std::size_t(all.count)] = reaction.force[i].z;
+    to[stride] = reaction.force[i].y;
+    to[2 * std::size_t(stride)] = reaction.force[i].z;
   }
 }
 
-/// A triangle's force on one of its vertices, whose x component is at `from`. `count`: number of triangles.
-__device__ __forceinline__ physics::Vec3<float> shell_force(const float* from, std::uint32_t count)
+/// A triangle's force on one of its vertices, whose x component is at `from`.
+__device__ __forceinline__ physics::Vec3<float> shell_force(const float* from, std::uint32_t stride)
 {
-  return { from[0], from[count], from[2 * std::size_t(count)] };
+  return { from[0], from[stride], from[2 * std::size_t(stride)] };
 }
 
 }  // namespace cuda

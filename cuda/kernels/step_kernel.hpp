@@ -271,7 +271,7 @@ enum class Effects : std::uint16_t
   tasks = 16,           ///< effects in node_tasks.cuh; in kernels of patches always set together with sliding
   friction = 32,        ///< friction of sliding nodes
   contact = 64,         ///< contact with bodies, in patches; always set together with all effects of nodes
-  shell = 128,          ///< layers that are shells, in patches; always set together with contact
+  shell = 128,          ///< layers that are shells, in patches; always set together with all effects of nodes
   added = 256,          ///< in strips, instead of fibres: AddedStress
   touch = 512,          ///< contact of tissue with itself, in patches; always set together with all effects of nodes
   cut = 1024,           ///< voxels that are partly filled
@@ -302,6 +302,7 @@ struct PatchRoom
 {
   std::uint32_t contact_points;
   std::uint32_t touch_vertices;  ///< vertices that may touch other tissue; 0: patches do not find these forces
+  std::uint32_t shell_threads;   ///< threads that find forces of shells while the others compute voxels
   // The following members count words of 16 bytes.
   std::uint32_t shell_words;  ///< displacements of vertices, and forces of triangles
   std::uint32_t table_words;  ///< tables of shells, of all patches of a block
