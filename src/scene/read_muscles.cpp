@@ -120,6 +120,7 @@ void read_tension(Mapping& mapping, const Scene& scene, const SceneNames& names,
   muscle.cross_section = 0;
   muscle.passive = false;
   muscle.tension_length = false;
+  muscle.of_rest = true;
   muscle.tone = 1;
 }
 

@@ -53,6 +53,15 @@ void read_skin(const Node& node, Scene& scene, const SceneNames& names)
   skin.extrapolation = mapping.optional("extrapolation").number(Dimension::length, positive, skin.extrapolation);
 }
 
+static void add_landmark(const SceneLandmark& landmark, const Node& entry, Scene& scene)
+{
+  if (std::any_of(scene.landmarks.begin(), scene.landmarks.end(),
+                  [&](const SceneLandmark& other) { return other.name == landmark.name; }))
+    entry.fault("'{}' is a landmark already; name those of a head that are meant in 'only'", landmark.name);
+  else
+    scene.landmarks.push_back(landmark);
+}
+
 /// Adds a set of landmarks of a head, given as {each: SET OF SURFACES, set: NAME, only: [NAME, …]}.
 static void read_head_landmarks(const Node& entry, Scene& scene, const SceneNames& names)
 {
@@ -86,11 +95,7 @@ static void read_head_landmarks(const Node& entry, Scene& scene, const SceneName
     {
       landmark.name = point.name;
       landmark.point = point;
-      if (std::any_of(scene.landmarks.begin(), scene.landmarks.end(),
-                      [&](const SceneLandmark& other) { return other.name == point.name; }))
-        entry.fault("'{}' is a landmark already; name those that are meant in 'only'", point.name);
-      else
-        scene.landmarks.push_back(landmark);
+      add_landmark(landmark, entry, scene);
     }
 }
 
@@ -107,7 +112,7 @@ void read_landmarks(const Node& node, Scene& scene, const SceneNames& names)
     landmark.name = name;
     landmark.line = entry.line();
     landmark.position = entry.vector(Dimension::length, any_number, landmark.position);
-    scene.landmarks.push_back(landmark);
+    add_landmark(landmark, entry, scene);
   }
 }
 

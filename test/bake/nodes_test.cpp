@@ -3,6 +3,7 @@
 
 #include "bake/scene_pieces.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -138,6 +139,16 @@ TEST(RestrictedNodes, RigidWinsOverPrescribedOverSliding)
     EXPECT_EQ(model.loads[0].fixed[a], model.to_scene.rotation[6 + a] == 1);
     EXPECT_EQ(model.loads[0].value[a], 2e-3 * model.to_scene.rotation[6 + a]);
   }
+  // a load that moves nothing, and two that move the same nodes
+  scene.loads[0].crop.upper[0] = 5.1e-3;
+  BakeReport report;
+  bake(scene, &report);
+  EXPECT_THAT(report.warnings, testing::Contains(testing::HasSubstr("load 'stretch' moves nothing")));
+  scene.loads = { load, load };
+  scene.loads[1].name = "again";
+  bake(scene, &report);
+  EXPECT_THAT(report.warnings,
+              testing::Contains(testing::HasSubstr("load 'again' moves 52 nodes that another load moves as well")));
 }
 
 TEST(RestrictedNodes, AConstraintThatCatchesNothingIsNamed)

@@ -179,5 +179,24 @@ TEST(Tissues, come_from_a_file_and_may_be_replaced)
   }
 }
 
+TEST(Strength, of_a_muscle_in_a_removed_island_is_zero_and_told)
+{
+  std::string scene = strand("", anywhere, "");
+  for (const auto& [old, changed] :
+       { std::pair("  bone:", "  speck: {shape: box, centre: [60, 0, 6], size: [6, 6, 6]}\n  bone:"),
+         std::pair("{inside: slab,", "{inside: [slab, speck],"),
+         std::pair("centre: [0, 1, 3], size: [40, 2, 4]", "centre: [60, 0, 6], size: [4, 4, 4]") })
+    scene.replace(scene.find(old), std::string(old).size(), changed);
+  BakeReport report;
+  const Model model = baked(scene, &report);
+  EXPECT_EQ(volume(model), 0);
+  ASSERT_EQ(report.forces.size(), 1u);
+  EXPECT_EQ(report.forces[0].length, 0);
+  EXPECT_EQ(report.forces[0].force, 0);
+  EXPECT_TRUE(std::any_of(report.warnings.begin(), report.warnings.end(),
+                          [](const std::string& warning)
+                          { return warning.find("'strand' has no voxel in the model") != std::string::npos; }));
+}
+
 }  // namespace
 }  // namespace frontalis

@@ -103,6 +103,18 @@ TEST(Weakness, of_a_sphere_ends_at_its_radius_and_that_of_a_dose_fades)
   }
 }
 
+TEST(Weakness, of_all_muscles_leaves_the_tension_of_skin)
+{
+  Scene scene = block_of_muscle(false);
+  scene.weakness = { { {}, 0, { 10e-3, 2e-3, 2e-3 }, 5e-3, false } };
+  scene.muscles.push_back(scene.muscles[0]);
+  scene.muscles[1].name = scene.muscles[1].volume = "tension";
+  scene.muscles[1].of_rest = true;
+  scene.volumes.push_back(volume_inside("tension", { "block" }, "muscle", false));
+  const Model model = bake(scene);
+  EXPECT_LT(muscle_volume(model, 0), 0.95 * muscle_volume(model, 1));
+}
+
 TEST(Weakness, without_any_strength_left_there_are_no_fibres)
 {
   Scene scene = block_of_muscle(false);

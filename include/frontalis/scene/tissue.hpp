@@ -86,6 +86,7 @@ struct SceneMuscle
   MuscleEnd origin{}, insertion{};  ///< ends of the fibres; both or neither are given
   std::optional<bool> ring{};       ///< whether the fibres run around a hole; absent: the shape decides
   std::optional<ControlNet> net{};
+  bool of_rest = false;  ///< whether it stands for the tension of a material at rest (`tension_of`)
 };
 
 /// Loss of strength by palsy or a toxin. The active stress at a place is multiplied by the factors of all weaknesses

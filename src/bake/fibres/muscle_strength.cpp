@@ -31,12 +31,16 @@ void scale_strength(const Scene& scene, const std::vector<MuscleFibres>& fibres,
     Muscle& muscle = model.muscles[m];
     BakeReport::MuscleForce force;
     force.name = muscle.name;
-    force.length = fibres[m].volume ? fibres[m].volume->fibre_length() : extents[m].last - extents[m].first + edge;
-    force.cross_section = extents[m].volume / force.length;
     force.given = scene.muscles[m].cross_section;
-    if (force.given > 0 && force.cross_section > 0)
+    const bool pulls = extents[m].volume > 0;
+    if (pulls)
+    {
+      force.length = fibres[m].volume ? fibres[m].volume->fibre_length() : extents[m].last - extents[m].first + edge;
+      force.cross_section = extents[m].volume / force.length;
+    }
+    if (pulls && force.given > 0)
       muscle.stress_reference *= force.given / force.cross_section;
-    if (force.given > 0 && !(force.cross_section > 0))
+    if (!pulls && !scene.switched_off.has(Effect::contraction))
       monitor.warn(
           "{} has no voxel in the model, so that it does not pull: check the thickness and place of its surface",
           place_in_scene(scene, "muscle", scene.muscles[m]));

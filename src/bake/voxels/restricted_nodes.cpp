@@ -218,14 +218,23 @@ void restrict_nodes(const Scene& scene, const PreparedSurfaces& surfaces, const 
     const SceneLoad& load = scene.loads[l];
     if (load.kind != SceneLoad::Kind::displacement)
       continue;
-    for_each_node(place_in_scene(scene, "load", load), { load.surface }, load,
+    const std::string place = place_in_scene(scene, "load", load);
+    const std::size_t before = model.prescribed.size();
+    std::size_t twice = 0;
+    for_each_node(place, { load.surface }, load,
                   [&](std::size_t n, double, const PreparedSurface&)
                   {
                     if (restrictions[n].kind == Kind::rigid)
                       return;
+                    twice += restrictions[n].kind == Kind::prescribed ? 1 : 0;
                     restrictions[n].kind = Kind::prescribed;
                     model.prescribed.push_back({ static_cast<std::int32_t>(n), static_cast<std::int32_t>(l) });
                   });
+    if (model.prescribed.size() == before)
+      monitor.warn("{} moves nothing: constraints hold all nodes near its surface; check its surface and crop", place);
+    if (twice > 0)
+      monitor.warn("{} moves {} that another load moves as well: part their surfaces or crops", place,
+                   count_text(twice, "node", "nodes"));
   }
 
   // For each field of the model, its surfaces. Surfaces that move alike and have tissue on the same side share a field,

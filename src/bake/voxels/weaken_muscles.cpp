@@ -44,10 +44,11 @@ void weaken_muscles(const Scene& scene, const LocalFrame& frame, Model& model, B
   std::map<std::int32_t, std::int32_t> passive_part;
   std::vector<double> whole(model.muscles.size(), 0), left(model.muscles.size(), 0);
   std::vector<bool> weakens(scene.weakness.size(), false);
-  const auto is_of = [](const SceneWeakness& weakness, const std::string& name)
+  const auto is_of = [&](const SceneWeakness& weakness, std::size_t m)
   {
     const auto& names = weakness.muscles;
-    return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
+    return names.empty() ? !scene.muscles[m].of_rest
+                         : std::find(names.begin(), names.end(), scene.muscles[m].name) != names.end();
   };
   for (std::size_t e = 0; e < model.voxels.size(); ++e)
   {
@@ -59,7 +60,7 @@ void weaken_muscles(const Scene& scene, const LocalFrame& frame, Model& model, B
       for (std::size_t w = 0; w < scene.weakness.size(); ++w)
       {
         const SceneWeakness& weakness = scene.weakness[w];
-        if (!is_of(weakness, of.name))
+        if (!is_of(weakness, muscle[f]))
           continue;
         const double share = share_kept(weakness, place);
         kept *= share;
@@ -88,7 +89,7 @@ void weaken_muscles(const Scene& scene, const LocalFrame& frame, Model& model, B
     // Muscles whose effect is switched off have no fibres.
     bool is_known = false, has_fibres = false;
     for (std::size_t m = 0; m < whole.size(); ++m)
-      if (is_of(weakness, model.muscles[m].name))
+      if (is_of(weakness, m))
       {
         is_known = true;
         has_fibres = has_fibres || whole[m] > 0;
