@@ -36,20 +36,9 @@ const SkinState& PosedFace::take(const Controls& pose, double seconds, const std
   const ControlCurve curve{ { 0, seconds * 2 / 3 }, { rest_controls(*model_), pose } };
   for (int slice = 1; slice <= slices; ++slice)
   {
-    guard_.advance(seconds / slices / model_->time_scaling, curve.at(seconds * slice / slices), go_on);
+    if (!guard_.advance_checked(seconds / slices / model_->time_scaling, curve.at(seconds * slice / slices), go_on))
+      throw Interrupted();
     watch(double(slice) / slices);
-    if (interrupt_requested())
-      throw Interrupted();
-  }
-  // The guard checks only every few hundred steps, so that the end of the motion needs a check of its own. If this
-  // check finds a fault, the guard returns to an earlier state, and the rest of the motion is repeated.
-  const double end = solver_->time();
-  for (std::int64_t before = -1; before != guard_.counts().rollbacks;)
-  {
-    before = guard_.counts().rollbacks;
-    guard_.check();
-    if (before != guard_.counts().rollbacks && !guard_.advance(end - solver_->time(), pose, go_on))
-      throw Interrupted();
   }
   read_skin(skin_);
   if (!is_finite(skin_))

@@ -94,7 +94,8 @@ void Run::advance(double end)
     const Controls controls = curve.at(next);
     const double seconds = (next - time) / model.time_scaling;
     const auto go_on = [] { return !interrupt_requested(); };
-    const bool whole = guard ? guard->advance(seconds, controls, go_on) : solver.advance(seconds, controls, go_on);
+    const bool whole =
+        guard ? guard->advance_checked(seconds, controls, go_on) : solver.advance(seconds, controls, go_on);
     time = whole ? next : solver.time() * model.time_scaling;
   }
 }
@@ -197,6 +198,18 @@ void measure(const WrinkleSettings& settings, const Model& model, RunSummary& su
   }
 }
 
+// Writes the table of the frames, the movie and the plot.
+void write_files(Run& run)
+{
+  if (run.folder)
+    run.folder->finish(json_of(run.model, run.summary));
+  std::fflush(stdout);  // what follows needs other programs, which may be missing
+  if (run.movie)
+    run.movie->finish();
+  if (run.plot)
+    run.plot->write();
+}
+
 void simulate(RunOptions& options)
 {
   check_options(options);
@@ -244,20 +257,14 @@ void simulate(RunOptions& options)
     // The result so far is written before the error is reported.
     summary.complete = false;
     summary.failure = error.what();
-    if (run.folder && summary.frames > 0)
-      run.folder->finish(json_of(*model, summary));
+    if (summary.frames > 0)
+      write_files(run);
     throw;
   }
   if (options.wrinkles || !options.wrinkles_in.empty())
     measure(wrinkles, *model, summary);
-  if (run.folder)
-    run.folder->finish(json_of(*model, summary));
   print_result(*model, summary);
-  std::fflush(stdout);  // what follows needs other programs, which may be missing
-  if (run.movie)
-    run.movie->finish();
-  if (run.plot)
-    run.plot->write();
+  write_files(run);
   if (!summary.complete)
     throw Interrupted();
   if (summary.equilibrium && !summary.equilibrium->reached)

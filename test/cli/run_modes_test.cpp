@@ -169,6 +169,31 @@ TEST_F(RunModes, a_movie_has_a_picture_per_frame)
   EXPECT_FALSE(std::filesystem::exists(folder / "it's.gif.frames/frame_0000.png"));
 }
 
+// The second plane of nodes passes through the first one after 13 ms, long before the guard's first regular check.
+TEST_F(RunModes, a_motion_that_the_guard_stops_leaves_its_good_frames)
+{
+  Model crushed = bar_model();
+  Load press;
+  press.name = "press";
+  press.kind = Load::Kind::displacement;
+  press.value = { -3e-3, 0, 0 };
+  press.ramp = 0.02;
+  crushed.loads.push_back(press);
+  for (std::size_t n = 0; n < crushed.nodes.size(); ++n)
+    if (crushed.nodes[n][0] == 1)
+      crushed.prescribed.push_back({ static_cast<std::int32_t>(n), 0 });
+  write_model(crushed, model);
+  const std::string movie = folder / "crushed.gif";
+  const ProgramResult result = run_program({ "run", model, "--backend", "cpu", "--seconds", "0.05", "--frame-rate",
+                                             "100", "--frames", frames, "--movie", movie });
+  EXPECT_EQ(result.code, 1);
+  if (result.errors.find("imagemagick") != std::string::npos)
+    GTEST_SKIP() << result.errors;
+  expect_contains(result.errors, "turn inside out");
+  EXPECT_EQ(json_from(text_of(frames + "/run.json")).at("frames"), 2) << "those of 0 and 10 ms";
+  EXPECT_EQ(text_of(movie).substr(0, 6), "GIF89a");
+}
+
 TEST_F(RunModes, a_movie_that_cannot_be_made_is_an_error_before_the_motion)
 {
   std::filesystem::create_directories(folder / "frames");

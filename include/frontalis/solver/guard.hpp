@@ -102,8 +102,12 @@ public:
   /// of an instability, which it ends too: Unstable is then not thrown. A motion that it has ended is in a good state.
   /// It may throw; then only Solver::reset() and restart() are of use.
   bool advance(double seconds, const Controls& target, const std::function<bool()>& go_on = {});
-  /// Checks the present state. After a finding it restores a good state, or throws Unstable. `go_on`: as of advance().
-  void check(const std::function<bool()>& go_on = {});
+  /// Like advance(), but the state at the end has passed a check too, so that it may be shown. If this check finds a
+  /// fault, the motion since the latest good state is repeated.
+  bool advance_checked(double seconds, const Controls& target, const std::function<bool()>& go_on = {});
+  /// Checks the present state and returns whether it is good. After a finding it restores a good state, or throws
+  /// Unstable. `go_on`: as of advance().
+  bool check(const std::function<bool()>& go_on = {});
   /// Like Solver::settle, with all checks of advance() but the check of the ledger, because settling opens a new
   /// ledger. Throws the errors of Solver::settle and of advance().
   Equilibrium settle(const Controls& target, double tolerance, double seconds,

@@ -290,11 +290,12 @@ void Guard::restart()
   g.checked_step = g.solver.time_step();
 }
 
-void Guard::check(const std::function<bool()>& go_on)
+bool Guard::check(const std::function<bool()>& go_on)
 {
   const Instability finding = self_->check();
   if (finding != Instability::none)
     self_->go_back(finding, self_->solver.controls(), self_->solver.time(), go_on ? go_on : always);
+  return finding == Instability::none;
 }
 
 bool Guard::advance(double seconds, const Controls& target, const std::function<bool()>& go_on)
@@ -341,6 +342,15 @@ bool Guard::advance(double seconds, const Controls& target, const std::function<
     }
   }
   return !ended;
+}
+
+bool Guard::advance_checked(double seconds, const Controls& target, const std::function<bool()>& go_on)
+{
+  const double end = self_->solver.time() + seconds;
+  while (advance(end - self_->solver.time(), target, go_on))
+    if (check(go_on))
+      return true;
+  return false;
 }
 
 Equilibrium Guard::settle(const Controls& target, double tolerance, double seconds,

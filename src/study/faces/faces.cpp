@@ -111,7 +111,7 @@ std::vector<Places> play(const std::shared_ptr<const Model>& model, const std::s
   for (int frame = 0; frame <= count; ++frame)
   {
     if (frame > 0)
-      guard.advance(frame_seconds / model->time_scaling, curve.at(frame * frame_seconds), go_on);
+      guard.advance_checked(frame_seconds / model->time_scaling, curve.at(frame * frame_seconds), go_on);
     solver->skin(skin);
     to_face_frame(*model, skin);
     frames.push_back(skin.landmarks);
