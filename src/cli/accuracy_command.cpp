@@ -52,14 +52,18 @@ Scene scene_with(Scene scene, const AccuracySetting& setting)
   return scene;
 }
 
-// The profile named `standard`, unless the user chose a profile; otherwise the scene's selected profile.
-AccuracyProfile standard_profile(const Scene& scene, bool chosen)
+// The profile named `standard`, unless the user chose a profile; otherwise the scene's selected profile. --voxel
+// replaces its voxel edge.
+AccuracyProfile standard_profile(const Scene& scene, const SceneOptions& options)
 {
-  if (!chosen)
+  AccuracyProfile standard = scene.accuracy;
+  if (options.accuracy.empty())
     for (const AccuracyProfile& profile : scene.profiles)
       if (profile.name == "standard")
-        return profile;
-  return scene.accuracy;
+        standard = profile;
+  if (!options.voxel_quantity.empty())
+    standard.voxel = scene.accuracy.voxel;
+  return standard;
 }
 
 // The chosen expression, or else the model's first expression; empty if the model has none.
@@ -116,7 +120,7 @@ ClosedForm scene_subject(const AccuracyOptions& options)
   const Scene scene = read_scene(options.source.path, options.source.scene);
   ClosedForm subject{ std::filesystem::path(options.source.path).stem().string(), {}, {} };
   AccuracyPlan& plan = subject.plan;
-  plan.standard.profile = standard_profile(scene, !options.source.scene.accuracy.empty());
+  plan.standard.profile = standard_profile(scene, options.source.scene);
   plan.profiles = scene.profiles;
   plan.frame_rate = scene.time.frame_rate;
   plan.history = { {}, {}, options.quick ? 0.2 : 0.3, options.quick ? 0.1 : 0.3 };

@@ -94,6 +94,9 @@ TEST_F(AccuracyCommand, refuses_what_cannot_be)
                   "nor a body of that name with a closed form: cantilever, stretched_block, active_bar");
   EXPECT_EQ(run({ "--tolerance", "1", "--time", "1" }).code, 2);
   EXPECT_EQ(run({ "--save", folder / "chosen.yaml" }).code, 2);
+  const ProgramResult fine = run({ "--voxel", "1" });
+  EXPECT_EQ(fine.code, 1);
+  expect_contains(fine.errors, "is 2 mm; it must be smaller than the standard setting's, 1 mm");
   // before anything is baked, which this scene cannot be
   std::string unbakeable = bar;
   const std::string where = "centre: [0, 0, 16]";
