@@ -225,8 +225,11 @@ void add_bench_command(CLI::App& app)
   auto options = std::make_shared<BenchOptions>();
   CLI::App* command = app.add_subcommand(
       "bench", "time the solver on dense blocks, whose speed others are compared with, and on a model");
-  command->add_option("SCENE_OR_MODEL", options->source.path, "time this model too, every muscle at activation 0.75");
+  CLI::Option* const scene = command->add_option("SCENE_OR_MODEL", options->source.path,
+                                                 "time this model too, every muscle at activation 0.75");
   add_scene_options(*command, options->source);
+  for (const char* const option : { "--mesh-dir", "--accuracy", "--voxel" })
+    command->get_option(option)->needs(scene);
   add_solver_options(*command, options->solver);
   command->add_flag("--quick", options->quick, "only the block of 64^3 voxels, a few seconds");
   command->add_flag("--effects", options->effects,

@@ -22,6 +22,17 @@ void add_solver_options(CLI::App& command, SolverSettings& settings)
       ->check(CLI::Range(0, 1024));
 }
 
+CLI::Option* add_ramp(CLI::App& command, double& seconds, const std::string& text)
+{
+  const auto fault = [](const std::string& given)
+  {
+    double number = 0;
+    const bool allowed = CLI::detail::lexical_cast(given, number) && number >= 0 && std::isfinite(number);
+    return allowed ? std::string() : given + " is not a finite number from 0";
+  };
+  return command.add_option("--ramp", seconds, text)->check(fault, "NONNEGATIVE");
+}
+
 std::vector<std::filesystem::path> package_places(const std::string& shared, const std::string& bundled,
                                                   const std::string& source)
 {

@@ -30,6 +30,9 @@ CLI::Option* add_positive(CLI::App& command, const std::string& name, Value& val
   return command.add_option(name, value, text)->check(fault, "POSITIVE");
 }
 
+/// Declares --ramp, whose value must be a finite number from 0.
+CLI::Option* add_ramp(CLI::App& command, double& seconds, const std::string& text);
+
 /// Declares --backend, whose default is the value of `backend`. `automatic`: whether "auto" is allowed.
 void add_backend_option(CLI::App& command, Backend& backend, bool automatic);
 

@@ -22,19 +22,21 @@ void add_run_options(CLI::App& command, RunOptions& options)
       "--activations", options.activation_file,
       "activations and poses over time: a table (CSV) with a column time [s], one column per muscle, and "
       "BONE.x, .y, .z [mm], .rx, .ry, .rz [degrees]");
-  command.add_flag("--demo", options.demo, "play the scene's demo once, expressions and poses of bones");
-  command.add_flag("--to-equilibrium", options.to_equilibrium,
-                   "relax to equilibrium under the final activations, within --seconds (10)");
+  CLI::Option* const demo =
+      command.add_flag("--demo", options.demo, "play the scene's demo once, expressions and poses of bones");
+  CLI::Option* const to_equilibrium =
+      command.add_flag("--to-equilibrium", options.to_equilibrium,
+                       "relax to equilibrium under the final activations, within --seconds (10)");
   add_positive(command, "--tolerance", options.tolerance,
-               "of equilibrium: remaining motion divided by displacement (0.001)");
+               "of equilibrium: remaining motion divided by displacement (0.001)")
+      ->needs(to_equilibrium);
   command.add_flag("--ledger", options.solver.ledger, "keep the energy ledger and print it");
   command.add_option("--bone", options.bones,
                      "motion of a bone in the face frame: NAME=X,Y,Z,RX,RY,RZ, shift [mm] and rotation vector about "
                      "the origin [degrees]; once per bone");
-  command
-      .add_option("--ramp", options.ramp,
-                  "seconds over which activations and bones move linearly (0.1, or half of the run)")
-      ->check(CLI::NonNegativeNumber);
+  add_ramp(command, options.ramp, "seconds over which activations and bones move linearly (0.1, or half of the run)")
+      ->excludes(demo)
+      ->excludes(to_equilibrium);
   command.add_option("--without", options.without, "effects to switch off: NAME,NAME,... (see frontalis effects)")
       ->delimiter(',');
   add_positive(command, "--seconds", options.seconds, "simulated seconds (1)");
@@ -57,7 +59,8 @@ void add_run_options(CLI::App& command, RunOptions& options)
           "upper left [mm]")
       ->delimiter(',')
       ->expected(4);
-  add_positive(command, "--frame-rate", options.frame_rate, "frames per simulated second (as the model says)");
+  add_positive(command, "--frame-rate", options.frame_rate, "frames per simulated second (as the model says)")
+      ->excludes(to_equilibrium);
   add_solver_options(command, options.solver);
   command
       .add_option(
@@ -87,8 +90,8 @@ void check_options(const RunOptions& options)
   if (const auto& box = options.wrinkles_in; !box.empty() && !(box[0] < box[2] && box[1] < box[3]))
     throw WrongUsage("--wrinkles-in: the first corner must be to the right of the second and below it");
   check_seconds(options.seconds);
-  if (!std::isfinite(options.ramp))
-    throw WrongUsage("--ramp: must be a number from 0");
+  if (options.ramp >= 0 && !options.activation_file.empty() && options.bones.empty())
+    throw WrongUsage("--ramp: --activations says when activations and bones move; it goes only with --bone");
   if (!(options.frame_rate >= 0) || !std::isfinite(options.frame_rate))
     throw WrongUsage("--frame-rate: must be a number greater than 0");
   if (options.seconds * std::max(options.frame_rate, 1.0) > 1e6)
