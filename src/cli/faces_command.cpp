@@ -149,6 +149,11 @@ void measure_faces(FacesOptions& options)
     throw Error(fmt::format("{}; {} could not be played:\n{}", summary, faults.size(), fmt::join(faults, "\n")));
   if (failed > 0 && !options.measured_only)
     throw Error(summary);
+  if (compared == 0 && !options.measured_only)
+    throw Error(
+        fmt::format("nothing was compared: of no landmark of these expressions {} has a motion of people; "
+                    "--measure only measures",
+                    options.people));
   fmt::print("{}\n", summary);
 }
 
@@ -163,8 +168,7 @@ void add_faces_command(CLI::App& app)
   command->add_option("--only", options->only, "expressions to play: NAME,NAME,... (all)")->delimiter(',');
   command->add_option("--people", options->people, "file with the motions of people (config/people.yaml)");
   add_positive(*command, "--seconds", options->settings.seconds, "simulated seconds per expression (1.2)");
-  command->add_option("--ramp", options->settings.ramp, "seconds in which muscles and bones get there (0.1)")
-      ->check(CLI::NonNegativeNumber);
+  add_ramp(*command, options->settings.ramp, "seconds in which muscles and bones get there (0.1)");
   command->add_flag("--all-landmarks", options->all_landmarks, "list landmarks of which nothing is published, too");
   command->add_flag("--measure", options->measured_only, "only measure: faces unlike people's are no error");
   command->add_option("--json", options->json,

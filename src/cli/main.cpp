@@ -80,6 +80,9 @@ int main(int argc, char** argv)
   try
   {
     app.parse(argc, argv);
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+      return report("the standard output could not be written whole; is the disk full or the reader gone?",
+                    frontalis::exit_error);
     return frontalis::exit_success;
   }
   catch (const CLI::ParseError& error)

@@ -10,6 +10,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 
 namespace frontalis
@@ -29,6 +30,9 @@ void verify(const VerifyOptions& options)
 {
   check_output(options.json);
   check_output(options.markdown);
+  if ((options.quick || !options.only.empty()) && std::filesystem::is_regular_file(options.markdown))
+    throw WrongUsage("--markdown: " + options.markdown +
+                     " would lose the cases that --only and --quick leave out; name a file that does not exist");
   BakeScene make_model;
 #ifdef FRONTALIS_WITH_BAKE
   make_model = [](const Scene& scene) { return bake(scene); };
@@ -55,14 +59,19 @@ void verify(const VerifyOptions& options)
     std::fflush(stdout);
     findings.emplace_back(c.name, std::move(finding));
     if (interrupt_requested())
-      throw Interrupted();
+      break;
   }
+  const bool interrupted = interrupt_requested();
   if (!options.json.empty())
-    write_text(options.json, findings_json(findings));
+    write_text(interrupted ? options.json + ".part" : options.json, findings_json(findings));
+  if (interrupted)
+    throw Interrupted();
   if (!options.markdown.empty())
     write_manual(findings, options.markdown);
   if (failed > 0)
     throw Error(fmt::format("{} of {} checks failed", failed, bounded));
+  if (bounded == 0)
+    throw Error("nothing was checked: the lines above say why cases were skipped");
   fmt::print("all {} checks passed in {:.0f} s\n", bounded, seconds);
 }
 
@@ -76,9 +85,11 @@ void add_verify_command(CLI::App& app)
   command->add_option("--only", options->only, "cases to run, by name");
   command->add_flag("--quick", options->quick, "leave out the cases that take longer than a few seconds");
   add_backend_option(*command, options->backend, false);
-  command->add_option("--json", options->json, "write the figures to this file");
-  command->add_option("--markdown", options->markdown,
-                      "write the manual to this file, and its plots to a folder of the same name");
+  command->add_option("--json", options->json, "write the figures to this file (FILE.part if interrupted)");
+  command->add_option(
+      "--markdown", options->markdown,
+      "write the manual to this file, and its plots to a folder of the same name; with --only or --quick a "
+      "new file");
   command->callback([options] { verify(*options); });
 }
 

@@ -112,6 +112,16 @@ TEST(Faces, the_generated_head_raises_its_brows_frowns_smiles_and_blinks)
   EXPECT_LT(std::abs(up(half.mapped().at("brow_mid_right"))), 1);
 }
 
+TEST(Faces, nothing_compared_does_not_pass)
+{
+  const TemporaryFolder folder;
+  const std::string people = folder.write("people.yaml", "smile: {still: [no_such_landmark]}\n");
+  const ProgramResult result = run_program({ "faces", FRONTALIS_SOURCE_DIRECTORY "/test/ros/small.yaml", "--people",
+                                             people, "--only", "shorten", "--seconds", "0.02" });
+  EXPECT_EQ(result.code, 1);
+  expect_contains(result.errors, "nothing was compared");
+}
+
 TEST(Faces, wrong_input_is_told)
 {
   const TemporaryFolder folder;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
 
 namespace frontalis
 {
@@ -58,7 +59,15 @@ TEST(Usage, wrong_options_end_with_2_and_one_message)
     { "retarget", scene, "-o", "found.csv" },
     { "gltf", scene, "-o", "found.csv" },
     { "calibrate", scene, "joints.csv", "landmarks.csv" },
+    { "run", scene, "--ramp", "0.1", "--demo" },
+    { "run", scene, "--ramp", "0.1", "--to-equilibrium" },
+    { "run", scene, "--ramp", "0.1", "--activations", "table.csv" },
+    { "run", scene, "--frame-rate", "10", "--to-equilibrium" },
+    { "run", scene, "--tolerance", "0.1" },
+    { "faces", scene, "--ramp", "nan" },
+    { "bench", "--voxel", "2" },
     { "verify", "--only", "no_such_case" },
+    { "verify", "--only", "rigid_motion", "--markdown", FRONTALIS_SOURCE_DIRECTORY "/doc/verification.md" },
   };
   for (const std::vector<std::string>& arguments : wrong)
   {
@@ -68,6 +77,14 @@ TEST(Usage, wrong_options_end_with_2_and_one_message)
     EXPECT_NE(result.errors, "") << last;
     EXPECT_EQ(result.output, "") << last;
   }
+}
+
+TEST(Usage, output_that_cannot_be_written_is_an_error)
+{
+  const std::string command = FRONTALIS_PROGRAM " verify --only active_bar > /dev/full 2> /dev/null";
+  const int status = std::system(command.c_str());
+  EXPECT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 1);
 }
 
 TEST(Files, that_are_missing_or_cannot_be_written_are_told)

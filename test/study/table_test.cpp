@@ -2,6 +2,7 @@
 
 #include "files.hpp"
 #include "frontalis/error.hpp"
+#include "frontalis/study/faces.hpp"
 
 #include <gtest/gtest.h>
 
@@ -90,4 +91,13 @@ TEST(WriteText, NamesTheFile)
   {
     EXPECT_NE(std::string(error.what()).find("/no such folder/x"), std::string::npos);
   }
+}
+
+TEST(FaceRow, FailsIfItsSizeIsNoNumber)
+{
+  FaceRow row;
+  row.most = 1e-3;
+  EXPECT_TRUE(row.passed());
+  row.size = NAN;
+  EXPECT_FALSE(row.passed());
 }

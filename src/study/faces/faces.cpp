@@ -129,7 +129,8 @@ std::vector<Places> play(const std::shared_ptr<const Model>& model, const std::s
 bool FaceRow::passed() const
 {
   const bool in_time = settles == 0 || std::isnan(settled) || settled <= settles;
-  return in_time && !(size < least) && !(size > most) && !(angle > largest_angle);
+  const bool in_range = std::isnan(most) || (size >= least && size <= most);  // a size that is NaN is not
+  return in_time && in_range && !(angle > largest_angle);
 }
 
 std::vector<FaceRow> measure_expression(const std::shared_ptr<const Model>& model, const std::string& expression,
