@@ -58,6 +58,7 @@ std::string json_of(const Model& model, const EffectCosts& costs)
                      { "nodes", model.nodes.size() },
                      { "step_us", 1e6 * costs.step },
                      { "plain_step_us", 1e6 * costs.plain_step },
+                     { "activation", costs.activation },
                      { "field_us", 1e6 * costs.field },
                      { "effects", nlohmann::ordered_json::parse(table_of(costs).json()) } });
 }
@@ -99,7 +100,8 @@ void print(const Model& model, const EffectCosts& costs)
       "{}a step takes {} us with all of them, {} us as a plain neo-Hookean step of the same {} voxels: {} times\n",
       table_of(costs).text(), readable(1e6 * costs.step, 4), readable(1e6 * costs.plain_step, 4), model.voxels.size(),
       readable(costs.step / costs.plain_step, 3));
-  fmt::print("on {}; every muscle at activation 0.75\n", costs.backend);
+  fmt::print("on {}; every muscle at activation {}{}\n", costs.backend, readable(costs.activation, 2),
+             costs.activation > 0.74 ? "" : ", since more --seconds are needed to reach 0.75");
 }
 
 void show_effects(const EffectsOptions& options)

@@ -68,6 +68,8 @@ TEST_F(RunModes, effects_are_listed_with_what_they_cost)
   for (const char* const part :
        { "contraction", "1 muscle", "viscosity", "no material is viscous", "plain neo-Hookean" })
     EXPECT_NE(table.output.find(part), std::string::npos) << table.output;
+  expect_contains(run_program({ "effects", model, "--seconds", "1e-9", "--backend", "cpu" }).output,
+                  "every muscle at activation 0, since more --seconds are needed to reach 0.75");
   const auto json = run_program({ "effects", model, "--seconds", "0.01", "--backend", "cpu", "--json" });
   ASSERT_EQ(json.code, 0);
   const nlohmann::json costs = json_from(json.output);

@@ -24,9 +24,10 @@ struct EffectCost
 struct EffectCosts
 {
   std::string backend;
-  double step = 0;        ///< time per step with every muscle at activation 0.75 [s]
-  double plain_step = 0;  ///< time per step of plain_model() [s]
-  double field = 0;       ///< time to compute one field of the skin [s]
+  double step = 0;           ///< time per step with every muscle at `activation` [s]
+  double activation = 0.75;  ///< less if it was not reached in the time of the measurement
+  double plain_step = 0;     ///< time per step of plain_model() [s]
+  double field = 0;          ///< time to compute one field of the skin [s]
   std::vector<EffectCost> effects;
 };
 

@@ -153,6 +153,8 @@ EffectCosts measure_effects(const std::shared_ptr<const Model>& model, const Sol
   const StepTimes both = timer({ { whole.get(), active }, { plain.get(), active } });
   costs.step = spread_of(both, 0).median;
   costs.plain_step = spread_of(both, 1).median;
+  if (!model->muscles.empty())
+    costs.activation = whole->controls().activation[0];
   const std::vector<Allocation> allocations = whole->allocations();
   for (const Effect effect : every_effect())
   {
