@@ -1,6 +1,7 @@
 #include "files.hpp"
 #include "frontalis/error.hpp"
 #include "frontalis/study/accuracy.hpp"
+#include "study/accuracy/accuracy_run.hpp"
 
 #include <gtest/gtest.h>
 
@@ -96,6 +97,13 @@ TEST_F(ClosedForms, voxels_that_do_not_fit_have_no_model)
   EXPECT_TRUE(std::any_of(findings.rows.begin(), findings.rows.end(), unfit));
   EXPECT_GT(findings.motion, 0);
   EXPECT_LT(error_of(findings, "1 mm"), error_of(findings, "standard"));
+}
+
+TEST(Richardson, is_most_cautious_if_the_order_is_not_credible)
+{
+  EXPECT_NEAR(richardson(2, 1, 3, 2), 1, 1e-12);
+  for (const double order : { 0.1, 4.0, double(NAN) })
+    EXPECT_GT(richardson(2, 1, 3, order), 7) << order;
 }
 
 }  // namespace

@@ -76,13 +76,9 @@ void estimate_reference_error(const AccuracyPlan& plan, const VariantBench& benc
   const auto edge = [&](std::size_t back) { return level(back)->setting.profile.voxel[0]; };
   const auto difference = [&](std::size_t back)
   { return worst(skin_errors(level(back + 1)->motion, level(back)->motion)).rms; };
-  findings.reference_error = difference(1);
   if (levels.size() > 2)
-  {
     findings.order = observed_order({ { edge(3), edge(2), edge(1) } }, difference(2), difference(1));
-    if (is_credible(findings.order))
-      findings.reference_error = richardson(edge(2), edge(1), difference(1), findings.order);
-  }
+  findings.reference_error = richardson(edge(2), edge(1), difference(1), findings.order);
   findings.motion = motion_size(level(1)->motion);
   if (findings.motion < least_motion)
     throw Error("the skin does not move in this motion; choose another by --expression");

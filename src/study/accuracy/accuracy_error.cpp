@@ -130,7 +130,7 @@ double observed_order(const std::array<double, 3>& edges, double coarse, double 
 
 double richardson(double before, double finest, double difference, double order)
 {
-  return difference / (std::pow(before / finest, order) - 1);
+  return difference / (std::pow(before / finest, is_credible(order) ? order : least_credible_order) - 1);
 }
 
 SkinAverage::SkinAverage(const VariantMotion& reference, double deviation) : weights_(reference.area.size())

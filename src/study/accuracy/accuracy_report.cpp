@@ -47,7 +47,7 @@ std::string reference_words(const AccuracyFindings& f)
   const std::string why = std::isnan(f.order)
                               ? "the finest three solutions show no order of convergence"
                               : fmt::format("the observed order of {:.2g} is outside 0.5 to 2.5", f.order);
-  return text + "the difference of the two finest solutions, since " + why +
+  return text + "Richardson's extrapolation with the cautious order of 0.5, since " + why +
          " (boundaries that are staircases converge unevenly).";
 }
 

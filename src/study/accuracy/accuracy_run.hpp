@@ -102,9 +102,11 @@ private:
 /// `coarse`: difference between the first and the second; `fine`: between the second and the third. NaN if no p in 0..8
 /// does.
 double observed_order(const std::array<double, 3>& edges, double coarse, double fine);
-/// Whether the order is plausible enough for richardson().
-inline bool is_credible(double order) { return order >= 0.5 && order <= 2.5; }
-/// Richardson's estimate of the error at edge `finest`, from the difference to the solution at edge `before`.
+/// Whether an observed order is plausible.
+constexpr double least_credible_order = 0.5;
+inline bool is_credible(double order) { return order >= least_credible_order && order <= 2.5; }
+/// Richardson's estimate of the error at edge `finest`, from the difference to the solution at edge `before`. The least
+/// credible order, for which the estimate is largest, stands for an order that is not credible.
 double richardson(double before, double finest, double difference, double order);
 
 /// Settings that differ from the standard setting in one knob.
