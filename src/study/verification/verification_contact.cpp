@@ -57,12 +57,12 @@ void verify_contact_pressure(const Backend&, Finding& finding)
       most = std::max(most, u[node][2] + way);
     }
     const std::string of = ", ν = " + readable(poisson) + ", " + backend;
-    finding.checks.relative("pressure over E" + of, "1", 0.05, pressure / block_young, 0.1);
+    finding.checks.relative("pressure over E" + of, "1", 0.05, pressure / block_young, 0.03);
     finding.checks.absolute("largest depth" + of, "% of a voxel", 0, 100 * most / block_edge, 2);
-    finding.checks.absolute("unevenness of depth" + of, "%", 0, 100 * (most - least) / most, 5);
+    finding.checks.absolute("unevenness of depth" + of, "%", 0, 100 * (most - least) / most, 0.5);
     finding.checks.relative("mean depth" + of, "um",
                             1e6 * pressure * block_edge / (physics::contact_stiffness * block_young),
-                            1e6 * 0.5 * (most + least), 0.03);
+                            1e6 * 0.5 * (most + least), 2e-3);
   };
   on_every_backend(finding,
                    [&](const Backend& backend)
@@ -159,7 +159,7 @@ void verify_contact_wrench(const Backend&, Finding& finding)
     {
       const std::string what = i < 3 ? "impulse " : "angular impulse ", axis(1, "xyz"[i % 3]);
       finding.checks.relative(what + axis + ", " + backend, i < 3 ? "uN s" : "nN m s", (i < 3 ? 1e6 : 1e9) * lost[i],
-                              (i < 3 ? 1e6 : 1e9) * gained[i], 0.01);
+                              (i < 3 ? 1e6 : 1e9) * gained[i], 1e-4);
     }
   };
   on_every_backend(finding, verify);
@@ -187,7 +187,7 @@ void verify_contact_incline(const Backend&, Finding& finding)
   };
   const auto verify = [&](const Backend& backend)
   {
-    finding.checks.absolute("way at 22°, " + backend, "um", 0, 1e6 * way(*on_incline(22, backend)), 1);
+    finding.checks.absolute("way at 22°, " + backend, "um", 0, 1e6 * way(*on_incline(22, backend)), 1e-3);
     for (const double degrees : { 35.0, 60.0 })
     {
       // With damping c and acceleration a, a block that moves by w in a time t moves by q w + a t (1 - q) / c in the
@@ -196,7 +196,7 @@ void verify_contact_incline(const Backend&, Finding& finding)
       const double first = way(*solver), second = way(*solver), q = std::exp(-damping * time);
       finding.checks.relative("acceleration at " + readable(degrees) + "°, " + backend, "m/s2",
                               gravity * (std::sin(degrees * degree) - friction * std::cos(degrees * degree)),
-                              damping * (second - q * first) / (time * (1 - q)), 0.01);
+                              damping * (second - q * first) / (time * (1 - q)), 6e-3);
     }
   };
   on_every_backend(finding, verify);

@@ -75,7 +75,7 @@ void verify_viscosity(const Backend& backend, Finding& finding)
       viscous->advance(then - now, viscous->controls());
       now = then;
       measured.add(now, shear_force(*viscous, model) / at_once);
-      finding.checks.relative(series.name + ", after " + readable(now) + " s", "1", left(now), measured.y.back(), 2e-3);
+      finding.checks.relative(series.name + ", after " + readable(now) + " s", "1", left(now), measured.y.back(), 5e-5);
     }
     plot.curves.insert(plot.curves.end(), { theory, measured });
   }
@@ -104,7 +104,7 @@ void verify_energy_balance(const Backend& backend, Finding& finding)
     solver->advance(0.1, target);
     const EnergyLedger ledger = solver->ledger();
     finding.checks.absolute("unexplained, " + kind + " bar", "%", 0,
-                            100 * std::abs(ledger.imbalance()) / ledger.largest, 1);
+                            100 * std::abs(ledger.imbalance()) / ledger.largest, 5e-4);
   }
 }
 
