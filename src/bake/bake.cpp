@@ -11,7 +11,6 @@
 #include "frontalis/model/effects.hpp"
 
 #include <algorithm>
-#include <map>
 #include <set>
 
 namespace frontalis
@@ -19,37 +18,11 @@ namespace frontalis
 namespace
 {
 
-constexpr double least_in_tissue = 0.4;   // share of a muscle's volume below which its place is doubtful
-constexpr double least_of_muscle = 0.05;  // and below which the bake ends
-constexpr double sides_differ = 1.3;      // ratio of these shares of a muscle and its counterpart above which it warns
-constexpr double sizes_differ = 1.6;      // ratio of their sizes, in tissue or not, above which it warns
-constexpr double largest_tissue = 0.6;    // [m]
+constexpr double largest_tissue = 0.6;  // [m]
 // Beyond these sizes tissue that would have the size of a face in another unit is an error: its distances from bones,
 // at every half millimetre, would take all memory.
 constexpr double impossible_tissue[2] = { 1e-3, 0.9 };  // [m]
 constexpr std::size_t few_voxels = 100;                 // with fewer, the unit or the voxel is probably wrong
-
-/// Warns of surfaces that the scene cuts out of the tissue, such as bones, but that lie nowhere near it or are smaller
-/// than a voxel: their length unit or their place is wrong, and tissue fills the place where they should be.
-void find_surfaces_apart(const Scene& scene, const Volumes& volumes, BakeMonitor& monitor)
-{
-  const Box tissue = volumes.tissue_box();
-  std::set<std::string> told;
-  for (const Volumes::Entry& entry : volumes.entries())
-    for (const std::size_t b : entry.outside)
-    {
-      const PreparedSurface& body = volumes.body(b);
-      if (!entry.volume->tissue)
-        continue;
-      if (!body.box().intersects(tissue) && told.insert(body.name()).second)
-        monitor.warn("surface '{}' bounds no tissue: it spans {}, the tissue {}; check its place and its length unit",
-                     body.name(), box_text(body.box(), scene.unit), box_text(tissue, scene.unit));
-      else if (body.box().diagonal().norm() < to_vector(scene.accuracy.voxel).minCoeff() &&
-               told.insert(body.name()).second)
-        monitor.warn("surface '{}' is smaller than a voxel: it spans {}; check its length unit", body.name(),
-                     box_text(body.box(), scene.unit));
-    }
-}
 
 /// Warns of bones that tissue fills: large closed surfaces from files that lie in the tissue and that no volume names.
 /// Small ones, such as cartilages, may be meant to hold the tissue in them.
@@ -101,125 +74,6 @@ std::string check_size(const Scene& scene, const Volumes& volumes, BakeMonitor& 
   if (large)
     monitor.warn("{}", text);
   return {};
-}
-
-/// Says of a volume outside of the tissue which of the tissue's conditions most of it fails, or returns an empty text.
-std::string why_outside(const Volumes& volumes, const Volumes::Entry& volume, const Box& extent)
-{
-  constexpr int points = 1000;
-  std::map<Membership, int> found;
-  for (int i = 0; i < points && !extent.isEmpty(); ++i)
-  {
-    const Vector3d p = spread_point(extent, i);
-    if (std::none_of(volume.inside.begin(), volume.inside.end(),
-                     [&](std::size_t b) { return volumes.body(b).tree().winding_number(p) > 0.5; }))
-      continue;
-    std::set<Membership> here;
-    for (const Volumes::Entry& entry : volumes.entries())
-      if (entry.volume->tissue)
-        here.insert(membership(volumes, entry, p));
-    if (here.count(Membership::inside) > 0)
-      here = { Membership::inside };
-    for (const Membership failed : here)
-      ++found[failed];
-  }
-  const auto most =
-      std::max_element(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
-  if (most == found.end())
-    return {};
-  switch (most->first)
-  {
-    case Membership::cropped:
-      return "; most of it lies outside of the tissue's 'crop'";
-    case Membership::beyond:
-      return "; most of it lies outside of the skin, or of what else the tissue is 'inside' of";
-    case Membership::excluded:
-      return "; most of it lies in bone, or in what else the tissue is 'outside' of or 'without'";
-    case Membership::wrong_depth:
-      return "; most of it lies deeper, or less deep, than the tissue's 'within' allows";
-    case Membership::hidden:
-      return "; most of it lies behind bone";
-    default:
-      return {};
-  }
-}
-
-/// Throws Error if a volume lies outside the tissue, and reports how much of each muscle was clipped.
-void check_volumes(const Scene& scene, const Volumes& volumes, const Voxels& voxels, BakeMonitor& monitor)
-{
-  struct Size
-  {
-    double in_tissue = 0, volume = 0, area = 0;  // the first is a share of the volume
-    bool closed = true;
-  };
-  std::map<std::string, Size> muscles;
-  for (std::size_t v = 0; v < volumes.entries().size(); ++v)
-  {
-    const Volumes::Entry& entry = volumes.entries()[v];
-    const double size = voxels.volume_size[v];
-    const std::string muscle = entry.muscle < 0 ? "" : "muscle '" + scene.muscles[entry.muscle].name + "'";
-    Box extent;
-    for (const std::size_t b : entry.inside)
-      extent.extend(volumes.body(b).box());
-    if (size <= 0 && entry.volume->tissue)
-      throw Error(volumes.place(*entry.volume) +
-                  ": is empty: no point is inside its surfaces, outside the others, at its depth and in its crop; "
-                  "check these, the units and the voxel size");
-    if (size <= 0)
-      throw failure(
-          "{}: {}, or is thinner than the sample spacing{}{}; check its surfaces, their length units, its crop "
-          "and the voxel size",
-          volumes.place(*entry.volume),
-          muscle.empty() ? "no point of it lies in the tissue" : muscle + " lies wholly outside the tissue",
-          extent.isEmpty() ? ""
-                           : ": its surfaces span " + box_text(extent, scene.unit) + ", the tissue " +
-                                 box_text(volumes.tissue_box(), scene.unit),
-          why_outside(volumes, entry, extent));
-    if (muscle.empty() || entry.closed_by || entry.inside.empty())
-      continue;
-    double whole = 0, area = 0;
-    bool closed = true;
-    for (const std::size_t b : entry.inside)
-    {
-      area += surface_area(volumes.body(b).mesh());
-      whole += signed_volume(volumes.body(b).mesh());
-      closed = closed && volumes.body(b).closed();
-    }
-    monitor.found("{}: {:.4g} cm3 in the tissue, {:.4g} cm3 by its surface ({:.0f} % clipped){}", muscle, 1e6 * size,
-                  1e6 * whole, 100 * std::max(0.0, 1 - size / whole), closed ? "" : "; the surface is open");
-    muscles[scene.muscles[entry.muscle].name] = { size / whole, whole, area, closed };
-    if (closed && size < least_of_muscle * whole)
-      throw failure(
-          "{}: {} lies in the tissue with only {:.2g} % of its volume; the rest, between {}, is in bone, outside "
-          "of the skin or cut off by a depth or crop: check the place of its surface",
-          volumes.place(*entry.volume), muscle, 100 * size / whole, box_text(extent, scene.unit));
-    if (closed && size < least_in_tissue * whole)
-      monitor.warn(
-          "{} lies in the tissue with {:.0f} % of its volume; the rest, between {}, is in bone, outside of the skin or "
-          "cut off by a depth or crop: see the table of muscles that --report prints, and check the surface",
-          muscle, 100 * size / whole, box_text(extent, scene.unit));
-  }
-  const auto differ = [](double a, double b, double ratio) { return std::max(a, b) > ratio * std::min(a, b); };
-  for (const auto& [name, here] : muscles)
-  {
-    const auto other = counterpart(muscles, name);
-    if (other == muscles.end())
-      continue;
-    const Size& there = other->second;
-    const bool closed = here.closed && there.closed;
-    if (closed && differ(here.in_tissue, there.in_tissue, sides_differ))
-      monitor.warn(
-          "muscle '{}' lies in the tissue with {:.0f} % of its volume, '{}' with {:.0f} %: the face will move "
-          "more on one side; check both surfaces",
-          name, 100 * here.in_tissue, other->first, 100 * there.in_tissue);
-    // The volume of an open surface is not known.
-    if (closed ? differ(here.volume, there.volume, sizes_differ) : differ(here.area, there.area, sizes_differ))
-      monitor.warn(
-          "muscle '{}' has {:.3g} {}, '{}' {:.3g} {}: the face will move more on one side; check whether one "
-          "surface is incomplete or belongs to both sides",
-          name, closed ? 1e6 * here.volume : 1e4 * here.area, closed ? "cm3" : "cm2 of surface", other->first,
-          closed ? 1e6 * there.volume : 1e4 * there.area, closed ? "cm3" : "cm2");
-  }
 }
 
 /// Greatest depth of a volume's points below a surface [m], estimated from 4000 points.

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "bake/bake_monitor.hpp"
-#include "bake/voxels/volumes.hpp"
+#include "bake/voxels/voxelise.hpp"
 
 #include <algorithm>
 #include <map>
@@ -50,6 +50,15 @@ void check_sides(const Scene& scene, const PreparedSurfaces& surfaces, BakeMonit
 /// such as bones, and in the skin on one side of the face alone. Holes of eyes and mouth have a counterpart on the
 /// other side or lie in the middle. Sides are those of the pairs of surfaces NAME_left and NAME_right.
 void check_holes(const Scene& scene, const PreparedSurfaces& surfaces, const Volumes& volumes, BakeMonitor& monitor);
+
+/// Warns of surfaces that the scene cuts out of the tissue, such as bones, but that lie nowhere near it, wholly outside
+/// of the skin, or are smaller than a voxel: their length unit or their place is wrong, and tissue fills the place
+/// where they should be.
+void find_surfaces_apart(const Scene& scene, const Volumes& volumes, BakeMonitor& monitor);
+
+/// Reports how much of each muscle was clipped, and warns of muscles that lie mostly outside of the tissue or differ
+/// from their counterpart. Throws Error if a volume is empty or a muscle lies nearly wholly outside.
+void check_volumes(const Scene& scene, const Volumes& volumes, const Voxels& voxels, BakeMonitor& monitor);
 
 /// Warns of surfaces beside the tissue, such as bones, that overlap although they move with different bones; of centres
 /// far from their bones; and of pairs NAME_left, NAME_right that are not mirror images of each other's places, as other

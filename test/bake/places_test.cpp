@@ -1,6 +1,7 @@
 // Warnings of surfaces, landmarks, centres and muscles at a place, or of a size, that is probably wrong.
 
 #include "bake/scene_pieces.hpp"
+#include "bake/mesh/surface.hpp"
 #include "files.hpp"
 #include "frontalis/scene/read_scene.hpp"
 
@@ -125,6 +126,56 @@ TEST(Places, of_muscles_without_thickness_are_told)
   expect_warning(with("cross_section: 20 mm2", "cross_section: 640 mm2"),
                  "muscle 'a_left' has 21 mm2 of its cross-section of 640 mm2 in the model, so that its stress is 30 "
                  "times");
+}
+
+TEST(Places, of_open_muscles_are_checked_and_what_clips_them_is_named)
+{
+  Scene model = plain_scene(1e-3);
+  const std::string file = testing::TempDir() + "open_muscle.obj";
+  TriangleMesh muscle = make_shape(*box_surface("", { 14e-3, 0, 0 }, { 20e-3, 4.6e-3, 4.6e-3 }, 1e-3).shape);
+  muscle.triangles.pop_back();
+  write_obj(muscle, file, [](const auto&) { return true; });
+  model.surfaces = { box_surface("block", { 0, 0, 0 }, { 20e-3, 12e-3, 12e-3 }), file_surface("a", file),
+                     box_surface("bone", { 13e-3, 0, 0 }, { 12e-3, 6e-3, 6e-3 }) };
+  model.volumes = { volume_inside("tissue", { "block" }, "fat", true),
+                    volume_inside("a", { "a" }, "muscle", false, 1) };
+  model.muscles = { { "a", "a", { 2, 0, 0 }, 0.3e6, false, true, 1 } };
+  BakeReport report;
+  bake(model, &report);
+  ASSERT_EQ(report.warnings.size(), 2u) << testing::PrintToString(report.warnings);  // no node is held
+  EXPECT_NE(report.warnings[0].find("most of what is clipped lies outside of the skin"), std::string::npos)
+      << report.warnings[0];
+  model.surfaces[0] = box_surface("block", { 0, 0, 0 }, { 50e-3, 12e-3, 12e-3 });
+  model.surfaces[2].shape->size[0] = 16e-3;
+  model.volumes[0].outside = { "bone" };
+  bake(model, &report);
+  ASSERT_EQ(report.warnings.size(), 2u) << testing::PrintToString(report.warnings);
+  EXPECT_EQ(report.warnings[0].find("muscle 'a' lies in the tissue with 20 %"), 0u) << report.warnings[0];
+  EXPECT_NE(report.warnings[0].find("most of what is clipped lies in surface 'bone'"), std::string::npos)
+      << report.warnings[0];
+}
+
+TEST(Places, of_bones_outside_of_the_skin_are_told)
+{
+  Scene model = plain_scene(4e-3);
+  model.surfaces = { sphere_surface("skin", { 0, 0, 0 }, 20e-3, 3e-3),
+                     box_surface("bone", { 18e-3, 18e-3, 18e-3 }, { 4e-3, 4e-3, 4e-3 }) };
+  model.volumes = { volume_inside("tissue", { "skin" }, "fat", true) };
+  model.volumes[0].outside = { "bone" };
+  BakeReport report;
+  bake(model, &report);
+  ASSERT_EQ(report.warnings.size(), 2u);  // no node is held
+  EXPECT_EQ(report.warnings[0].find("surface 'bone' lies wholly outside of 'skin' and bounds no tissue: it spans (16,"),
+            0u)
+      << report.warnings[0];
+  model.surfaces[1] = box_surface("bone", { 0, 0, 0 }, { 60e-3, 4e-3, 4e-3 });  // all corners lie outside
+  bake(model, &report);
+  EXPECT_EQ(report.warnings.size(), 1u);
+  // one of two parts suffices
+  model.surfaces.push_back(box_surface("part", { 0, 0, 60e-3 }, { 10e-3, 10e-3, 10e-3 }));
+  model.volumes[0].inside = { "skin", "part" };
+  bake(model, &report);
+  EXPECT_EQ(report.warnings.size(), 1u) << testing::PrintToString(report.warnings);
 }
 
 }  // namespace

@@ -16,7 +16,8 @@ constexpr double least_distinctness = 1.1;
 constexpr double least_kept = 0.9;  // smallest fraction of a muscle that must be in its largest connected component
 // largest RMS distance of a fitted volume from the muscle, divided by the muscle's width
 constexpr double largest_misfit = 0.25;
-constexpr double farthest_end = 0.5;  // largest distance of an origin or insertion, divided by the muscle's length
+constexpr double least_enclosed = 0.5;  // smallest fraction of a muscle that a fitted volume may enclose
+constexpr double farthest_end = 0.5;    // largest distance of an origin or insertion, divided by the muscle's length
 
 const char* const remedy = "; give 'origin' and 'insertion', a control 'net', or one direction 'fibre'";
 
@@ -123,6 +124,9 @@ MuscleFibres fit_muscle(const SceneMuscle& muscle, const TriangleMesh& mesh, con
       "which it encloses {:.0f} %; rms distance {:.2f} mm",
       muscle.name, guide.ring ? "fibres in rings, on average" : "fibres on average", 1e3 * volume.fibre_length(),
       1e3 * coordinates.width, 1e6 * fit.volume, 1e6 * signed_volume(mesh), 100 * fit.enclosed, 1e3 * fit.distance);
+  if (fit.enclosed < least_enclosed)
+    throw failure("its fibres cannot be found: the NURBS volume that follows its shape encloses only {:.0f} % of it{}",
+                  100 * fit.enclosed, remedy);
   if (fit.distance > largest_misfit * coordinates.width)
     throw failure(
         "its fibres cannot be found: no NURBS volume follows its shape (rms distance {:.2f} mm at a width of {:.1f} "

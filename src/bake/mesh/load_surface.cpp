@@ -360,7 +360,17 @@ LoadedSurface load_surface(const Surface& surface, double unit)
     found(pieces == 1 ? "was inside-out; turned" : count_text(turned, "piece", "pieces") + " inside-out; turned");
   if (nested > 0)
     found(count_text(nested, "piece lies", "pieces lie") + " inside another and face outwards: taken as solid there");
-  refuse_faults(mesh, faults, closed, unit);
+  try
+  {
+    refuse_faults(mesh, faults, closed, unit);
+  }
+  catch (const Error& error)
+  {
+    std::string text = error.what();
+    for (const std::string& warning : loaded.warnings)
+      text += "; " + warning;
+    throw Error(text);
+  }
   describe(faults, unit, found);
   return loaded;
 }
