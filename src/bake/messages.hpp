@@ -65,17 +65,19 @@ inline std::string box_text(const Box& box, double unit)
 }
 
 /// Suggests the length unit with which something that spans `extent` [m] in `unit` [m] would have the size of a face or
-/// of a part of a face: "with 'unit: m' it would span 180 mm, as a face does". Empty if it has such a size or would
-/// have it in no unit.
+/// of a part of a face: "with 'unit: cm' it would span 70 mm, with 'unit: in' 178 mm, as a face does". Empty if it has
+/// such a size or would have it in no unit.
 inline std::string unit_advice(double extent, double unit)
 {
   const auto as_a_face = [](double size) { return size > 0.02 && size < 0.6; };
   if (as_a_face(extent))
     return {};
+  std::string text;
   for (const double other : { 1e-3, 1.0, 1e-2, 1e-6, 0.0254 })
     if (const double size = extent / unit * other; as_a_face(size))
-      return fmt::format("with 'unit: {}' it would span {}, as a face does", unit_text(other), length_text(size, 1e-3));
-  return {};
+      text += fmt::format("{} 'unit: {}' {}{}", text.empty() ? "with" : ", with", unit_text(other),
+                          text.empty() ? "it would span " : "", length_text(size, 1e-3));
+  return text.empty() ? text : text + ", as a face does";
 }
 
 }  // namespace frontalis

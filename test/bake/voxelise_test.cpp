@@ -271,8 +271,14 @@ TEST(Voxelise, WarnsOfSidesThatDifferOrLieBeforeEachOtherAndOfTissueLargerThanAH
   EXPECT_NE(report.warnings[0].find("more than a head"), std::string::npos) << report.warnings[0];
   scene.surfaces[0].shape->size[0] = 1.8;
   scene.unit = 1e-2;
-  const std::string fault = fault_of(scene);
+  std::string fault = fault_of(scene);
   EXPECT_NE(fault.find("more than a head; check 'unit': with 'unit: mm' it would span 180 mm"), std::string::npos)
+      << fault;
+  scene.surfaces[0] = box_surface("block", { 0, 0, 0 }, { 7e-3, 4e-3, 4e-3 });
+  scene.unit = 1e-3;
+  fault = fault_of(scene);
+  EXPECT_NE(fault.find("with 'unit: cm' it would span 70 mm, with 'unit: in' 178 mm, as a face does"),
+            std::string::npos)
       << fault;
 }
 

@@ -211,7 +211,7 @@ std::vector<VectorXd> ForwardRuns::play(const ControlCurve& curve, const std::ve
   for (const double time : times)
   {
     if (time > now)
-      guard_.advance((time - now) / model_->time_scaling, curve.at(time), go_on);
+      guard_.advance_checked((time - now) / model_->time_scaling, curve.at(time), go_on);
     now = std::max(now, time);
     out.push_back(places());
     go_on();
