@@ -128,7 +128,8 @@ void copy_settings(const Scene& scene, const LocalFrame& frame, Model& model)
 
   for (const SceneMuscle& muscle : scene.muscles)
     model.muscles.push_back({ muscle.name, muscle.stress_reference, muscle.passive, muscle.tension_length,
-                              muscle.rise_time, muscle.fall_time, muscle.tone });
+                              muscle.rise_time / scene.time.scaling, muscle.fall_time / scene.time.scaling,
+                              muscle.tone });
   for (const SceneLoad& load : scene.loads)
     if (load.activated)
       model.muscles.emplace_back().name = load.name;

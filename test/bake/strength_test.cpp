@@ -198,5 +198,16 @@ TEST(Strength, of_a_muscle_in_a_removed_island_is_zero_and_told)
                           { return warning.find("'strand' has no voxel in the model") != std::string::npos; }));
 }
 
+TEST(Strength, changes_as_fast_as_is_shown)
+{
+  const Model model = baked(strand(", rise_time: 20 ms, fall_time: 40 ms", anywhere, "") +
+                            "time: {scaling: 4, activation_slew: 10 1/s}\n"
+                            "loads:\n  - {name: lift, displacement: [null, null, 1], surface: slab, ramp: 0.2 s}\n");
+  EXPECT_DOUBLE_EQ(model.muscles[0].rise_time, 5e-3);
+  EXPECT_DOUBLE_EQ(model.muscles[0].fall_time, 10e-3);
+  EXPECT_DOUBLE_EQ(model.loads[0].ramp, 0.05);
+  EXPECT_DOUBLE_EQ(model.activation_slew, 40);
+}
+
 }  // namespace
 }  // namespace frontalis

@@ -68,8 +68,11 @@ std::string cut_off_stl(const std::string& file)
   stream.seekg(0, std::ios::end);
   const auto size = static_cast<std::streamoff>(stream.tellg());
   const double bytes = static_cast<double>(size), expected = 84 + 50 * triangles;
+  const std::string word(header.data(), 5);
+  if (bytes != expected && word != "solid" && in_lower_case(word) == "solid")
+    return "it is a text with capitals, which importers of STL files cannot read; export it as a binary file";
   // The text at the start of a binary file may be that of a text file.
-  if (std::string(header.data(), 5) == "solid" && bytes != expected)
+  if (word == "solid" && bytes != expected)
   {
     constexpr std::streamoff end = 1000;
     stream.seekg(std::max<std::streamoff>(0, size - end));

@@ -321,7 +321,7 @@ void bind_surfaces(const Scene& scene, const PreparedSurfaces& surfaces, const L
   {
     Load out;
     out.name = load.name;
-    out.ramp = load.ramp;
+    out.ramp = load.ramp / scene.time.scaling;
     if (load.activated)
       out.activation = index_of(model.muscles, load.name, place_in_scene(scene, "load", load), "muscle");
     out.value = frame.turn(load.value);
