@@ -160,7 +160,7 @@ std::string without_side(const std::string& name)
 /// Names of the surfaces that `each` lists, and of the muscles in the sets that it lists, except those in `without`.
 std::vector<std::string> read_members(const Node& each, const Node& without, const SceneNames& names)
 {
-  Names known = names.surfaces, members{ "muscle of the set", {}, true };
+  Names known = names.surfaces, members{ "muscle", {}, names.surfaces.complete };
   for (const auto& [set, muscles] : names.muscle_sets)
     known.names.push_back(set);
   for (const std::string& name : each.references(known))

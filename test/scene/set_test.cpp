@@ -124,7 +124,7 @@ TEST(Set, faults_name_their_place)
   expect(error_of("  brow: {shape: forehead, part: skin, parts: all}\n", "  body: {}\n"),
          "surfaces.brow.part: stands beside");
   expect(error_of(all, "  m: {each: brwo}\n"), "muscles.m.each: no surface is called 'brwo'");
-  expect(error_of(all, "  m: {each: brow, without: galea}\n"), "muscles.m.without: no muscle of the set is called");
+  expect(error_of(all, "  m: {each: brow, without: galea}\n"), "muscles.m.without: no muscle is called");
   expect(error_of(all, "  m: {each: brow, fibre: [1, 0, 0]}\n"), "muscles.m.fibre: unknown key");
   expect(error_of(all, "  m: {each: [brow, procerus]}\n"), "muscles.m.each: 'procerus' is in two sets");
   expect(error_of(all, "  body: {material: fibre}\n"), "'material' stands beside a volume called 'body'");
